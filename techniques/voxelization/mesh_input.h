@@ -91,7 +91,7 @@ enum class Rule {
     Conservative,  // every voxel whose closed cube meets the triangle, and few more
 };
 
-/// How the worksheet method finds the bits of a voxel.
+/// How the worksheet method, and drawing after it, find the bits of a voxel.
 enum class Addressing {
     Instructions,  // shifts and masks
     Tables,        // dependent look-ups. [zju2005] Sec. 2.3.2; one sheet

@@ -170,6 +170,10 @@ VolumeRenderer::VolumeRenderer(const gl::ShaderLibrary& shaders, const Worksheet
     defines["HEAD"] = settings.mode == DrawMode::Mixed ? 1 : 0;
     defines["NORMALS"] = settings.value == VoxelValue::Normal ? 1 : 0;
     defines["SECOND"] = settings.hasSecond ? 1 : 0;
+    if (settings.looksUpBits) {
+        defines["TABLES"] = 1;
+        bitOfByte_ = makeBitTable();
+    }
     planes_ = gl::Pass(shaders,
                        {"voxelization/proxy_plane.vert.glsl",
                         isOpaque ? "voxelization/volume_opaque.frag.glsl"
@@ -192,6 +196,7 @@ void VolumeRenderer::draw(const gl::Texture& sheets, const gl::Texture* second,
     gl::Resources volumes{{"sheets", sheets}};
     if (second) volumes = volumes.with({{"secondSheets", *second}});
     if (head) volumes = volumes.with({{"head", *head}});
+    if (settings_.looksUpBits) volumes = volumes.with({{"bitOfByte", bitOfByte_}});
     vertexArray_.bind();
     glDisable(GL_CULL_FACE);
     if (settings_.mode == DrawMode::Opaque) {

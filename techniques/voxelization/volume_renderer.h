@@ -26,6 +26,7 @@ struct DrawSettings {
     VoxelValue value = VoxelValue::Occupancy;
     float opacity = 0.1F;           // of a voxel that a ray passes along an axis
     std::optional<scene::Box> cut;  // left out; in fractions of the grid's box
+    bool looksUpBits = false;       // by a table, as the thesis. [zju2005] Sec. 2.3.2 (1)
     bool hasSecond = false;         // a second grid is drawn too, common voxels red (figure 2.8)
 };
 
@@ -85,7 +86,7 @@ class VolumeRenderer {
     glm::vec3 eyeVolume_{0.0F};  // voxels
     glm::vec3 light_{0.0F};
     gl::Pass planes_, shade_;
-    gl::Texture hits_, depth_, color_;
+    gl::Texture hits_, depth_, color_, bitOfByte_;
     gl::Framebuffer hitTarget_, colorTarget_;
     gl::VertexArray vertexArray_;
     kit::WholeImage wholeImage_;

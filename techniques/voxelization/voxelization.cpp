@@ -138,10 +138,11 @@ void checkSolid(const Params& params, const MeshVoxelizerSettings& settings) {
     }
 }
 
-/// How the stages of the worksheet method address voxels; either way makes the same grid.
+/// How the worksheet method and drawing address voxels; either way makes the same grid.
 void readAddressing(Params& params, MeshVoxelizerSettings& settings) {
-    settings.addressing = params.getEnum("addressing", Addressing::Instructions, kAddressings,
-                                         {"how texelization and synthesis find a voxel's bits"});
+    settings.addressing =
+        params.getEnum("addressing", Addressing::Instructions, kAddressings,
+                       {"how texelization, synthesis and drawing find a voxel's bits"});
     if (settings.method != Method::Worksheet) {
         params.refuseGiven({"addressing"}, "'method: worksheet'");
     }
@@ -224,6 +225,7 @@ struct VoxelizationParams {
                                                {"count what the rule misses, against the CPU "
                                                 "references of thin and conservative"})) {
         checkInput(params);
+        drawing.draw.looksUpBits = voxelizer.addressing == Addressing::Tables;
         checkResolution(params);
         if (!box) return;
         voxelizer.grid.fitTo(*box, 0);

@@ -120,6 +120,16 @@ gl::Texture makeSheets(const WorksheetLayout& layout) {
     return sheets;
 }
 
+gl::Texture makeBitTable() {
+    std::vector<std::uint8_t> bits;
+    for (unsigned bit = 0; bit < 8; ++bit) {
+        for (unsigned byte = 0; byte < 256; ++byte) bits.push_back((byte >> bit) & 1U);
+    }
+    gl::Texture table = gl::Texture::make2D(GL_R8UI, {256, 8});
+    table.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bits.data());
+    return table;
+}
+
 DenseGrid VoxelGrid::read() const {
     return DenseGrid(layout, readSheets(sheets));
 }

@@ -125,6 +125,9 @@ gl::Texture makeSheets(const WorksheetLayout& layout);
 /// The edge of a voxel, by the longest side.
 float voxelSizeOf(const scene::Box& box, const GridShape& shape);
 
+/// What reads a bit of a byte: texel (s, t) is bit t of the byte s. [zju2005] Sec. 2.3.2 (1).
+gl::Texture makeBitTable();
+
 /// A voxel grid on the device, in the z layout. Voxel (0, 0, 0) lies at box.min.
 struct VoxelGrid {
     gl::Texture sheets;

@@ -41,11 +41,6 @@ class LookupTables {
     explicit LookupTables(const WorksheetLayout& layout)
         : xFromZ_(fromZ(layout, Axis::X)), yFromZ_(fromZ(layout, Axis::Y)) {
         GFXREPRO_ASSERT_EQ(layout.layers(), 1);
-        std::vector<std::uint8_t> bits;
-        for (unsigned bit = 0; bit < 8; ++bit) {
-            for (unsigned byte = 0; byte < 256; ++byte) bits.push_back((byte >> bit) & 1U);
-        }
-        bitOfByte_.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, bits.data());
         constexpr std::uint8_t kPowers[] = {1, 2, 4, 8, 16, 32, 64, 128};
         powerOfTwo_.upload(GL_RED_INTEGER, GL_UNSIGNED_BYTE, kPowers);
     }
@@ -86,8 +81,8 @@ class LookupTables {
         return table;
     }
 
-    // (1) Texel (s, t) is bit t of the byte s; (2) texel s is 2^s.
-    gl::Texture bitOfByte_ = gl::Texture::make2D(GL_R8UI, {256, 8});
+    gl::Texture bitOfByte_ = makeBitTable();  // (1)
+    // (2) Texel s is 2^s.
     gl::Texture powerOfTwo_ = gl::Texture::make2D(GL_R8UI, {8, 1});
     // (3) The size of the sheet: for the first voxel of a texel of the z sheet where the sheet of x
     // (of y) has it: column, row, byte of the texel (0 … 3) and bit of the byte.

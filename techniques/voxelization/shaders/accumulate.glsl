@@ -4,10 +4,6 @@
 // next voxel when a voxel is hit twice; image atomics do not.
 // Defines: ACCUMULATE_OR or ACCUMULATE_MAX.
 
-#ifdef TABLES
-#include "voxelization/lookup_tables.glsl"
-#endif
-
 layout(r32ui) uniform restrict coherent uimage2DArray sheet;
 
 void accumulate(ivec3 local, uint value) {

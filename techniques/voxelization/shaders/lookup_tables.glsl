@@ -1,4 +1,4 @@
-// The look-up textures of worksheet_method.cpp. A texel's four bytes are the channels of the thesis's
+// Look-up textures: that of bits from makeBitTable(), the others of worksheet_method.cpp. A texel's four bytes are the channels of the thesis's
 // sheets; telling them apart takes an instruction here, as the sheets are of one channel.
 // [zju2005] Sec. 2.3.2. Defines: VOXEL_BITS, LANE_MASK.
 

@@ -5,9 +5,6 @@
 //  TABLES  the place of the first voxel, and a bit's value, by look-up textures
 //  VALUES  the largest value of a voxel stays; else the bits are OR-ed
 #include "voxelization/worksheet.glsl"
-#ifdef TABLES
-#include "voxelization/lookup_tables.glsl"
-#endif
 
 // SHEET_X and SHEET_Y are of these sheets as SHEET is of the grid's.
 layout(local_size_x = GROUP_EDGE, local_size_y = GROUP_EDGE) in;

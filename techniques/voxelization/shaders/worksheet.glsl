@@ -2,7 +2,11 @@
 // u, v and w), SHEET, VOXEL_BITS, VOXELS_PER_TEXEL (C) and LANE_MASK.
 // Departure [zju2005] Sec. 2.3.2: integer instructions instead of lookup textures (256×8 bits of a
 // byte, 8×1 powers of two, sheet to sheet): shader model 2 had none; the addresses are the same.
-// The stages of the worksheet method can look up instead (lookup_tables.glsl).
+// With TABLES the stages of the worksheet method and drawing look up instead.
+
+#ifdef TABLES
+#include "voxelization/lookup_tables.glsl"
+#endif
 
 // Local (u, v, w) of an axis (0 x, 1 y, 2 z), w along it: x: (y, z, x), y: (z, x, y), z: (x, y, z).
 ivec3 localFromVolume(int axis, ivec3 p) { return axis == 0 ? p.yzx : axis == 1 ? p.zxy : p; }
@@ -38,7 +42,14 @@ uint bitsOfSlices(int slab) { return 0xFFFFFFFFu >> (32 - slicesOf(slab) * VOXEL
 int worksheetShift(int w) { return w % VOXELS_PER_TEXEL * VOXEL_BITS; }
 
 // The voxel's value out of its texel's word.
-uint voxelOfWord(uint word, int w) { return (word >> worksheetShift(w)) & LANE_MASK; }
+uint voxelOfWord(uint word, int w) {
+    int shift = worksheetShift(w);
+#ifdef TABLES
+    return lookedUpVoxel(word, uint(shift) / 8u, uint(shift) % 8u);
+#else
+    return (word >> shift) & LANE_MASK;
+#endif
+}
 
 // The value of voxel (x, y, z) of a grid in the z layout; 0 outside the grid.
 uint loadVoxel(usampler2DArray sheets, ivec3 voxel) {

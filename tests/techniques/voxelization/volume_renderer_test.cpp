@@ -213,6 +213,29 @@ TEST_P(VolumeRendering, TransparencyIsTheLengthOfTheRayInFullVoxels) {
     EXPECT_LE(wrong, kSizePx.x * kSizePx.y / 1000);
 }
 
+// [zju2005] Sec. 2.3.2 (1). To the bit.
+TEST_F(GlTest, LookUpsDrawTheSamePicture) {
+    const scene::Camera camera = orbitCamera(kBox, 45, 35, 1.5F);
+    for (const int voxelBits : {1, 8, 32}) {
+        const WorksheetLayout layout(32, voxelBits);
+        const gl::Texture sheets = uploaded(shell(layout));
+        for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {
+            DrawSettings settings;
+            settings.mode = mode;
+            const auto drawn = [&] {
+                VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
+                renderer.draw(sheets, nullptr, nullptr);
+                return renderer.readImage();
+            };
+            const image::ImageF byInstructions = drawn();
+            settings.looksUpBits = true;
+            EXPECT_TRUE(drawn() == byInstructions) << voxelBits << " bits";
+            EXPECT_LT(byInstructions.at(kSizePx.x / 2, kSizePx.y / 2, 1),
+                      0.9F);  // not the background
+        }
+    }
+}
+
 TEST_F(GlTest, CutVoxelsAreNotDrawn) {
     const WorksheetLayout layout(32, 1);
     DenseGrid grid(layout);
