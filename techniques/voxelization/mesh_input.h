@@ -134,7 +134,7 @@ struct MeshRequest {
         return isSolid() ? settings.fillRule == FillRule::Crossings
                          : settings.rule != Rule::Rasterized;
     }
-    /// The largest value of a voxel wins (its bits are not simply OR-ed).
+    /// Of rasterized voxels the largest value stays; exact rules have the mean.
     bool hasValues() const { return settings.grid.value != VoxelValue::Occupancy; }
 };
 

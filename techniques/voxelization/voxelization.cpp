@@ -58,7 +58,9 @@ constexpr Choice<FillRule> kFillRules[] = {
 };
 constexpr Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
-    {VoxelValue::Normal, "normal", "octahedral normal"},
+    {VoxelValue::Normal, "normal",
+     "octahedral normal: of exact rules the mean by area of the surface in the voxel, else the "
+     "largest code of what fills it"},
 };
 constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},

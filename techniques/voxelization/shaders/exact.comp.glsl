@@ -94,7 +94,7 @@ void listOnAxis(ivec3 a, ivec3 b, ivec3 c) {
     }
 }
 
-#if defined(RULE_CONSERVATIVE) && VALUE == 0
+#if defined(RULE_CONSERVATIVE) && !defined(SUM_NORMALS)
 // A triangle whose box meets one voxel, or one row of them, meets each of these: it is in one piece.
 bool fillRow(ivec3 a, ivec3 b, ivec3 c) {
     ivec3 first = (min(a, min(b, c)) - 1) >> 8;
@@ -115,7 +115,7 @@ void listTriangle() {
     ivec3 b = cornerAt(1u);
     ivec3 c = cornerAt(2u);
 #ifdef RULE_CONSERVATIVE
-#if VALUE == 0
+#ifndef SUM_NORMALS
     if (fillRow(a, b, c)) return;
 #endif
     axis = triangle < firstOfY ? 0 : triangle < firstOfZ ? 1 : 2;

@@ -12,14 +12,14 @@
 // Sample lines that meet an edge are shifted by an infinitely small (ε, ε², ε³) in x, y, z, the same
 // for the three axes: each closed surface is then crossed an even number of times, and a face on a
 // voxel's centre gives all axes the same inside.
+// With SUM_NORMALS the voxels that are full get the normals of what the conservative rule finds in them.
 #include "voxelization/worksheet.glsl"
-#ifdef RULE_TOGGLE
+#if defined(RULE_TOGGLE)
 #include "voxelization/crossings.glsl"
+#elif defined(SUM_NORMALS)
+#include "voxelization/normal_sums.glsl"
 #else
 #include "voxelization/accumulate.glsl"
-#endif
-#if VALUE != 0
-#include "voxelization/voxel_value.glsl"
 #endif
 
 #if defined(WIDE_LATTICE) || !defined(GL_ARB_gpu_shader_int64)
@@ -35,9 +35,6 @@
 // 256 units a voxel.
 layout(std430) restrict readonly buffer Positions { int lattice[]; };
 layout(std430) restrict readonly buffer Triangles { uint corners[]; };
-#if VALUE != 0
-layout(std430) restrict readonly buffer Attributes { float attributes[]; };
-#endif
 
 int axis;  // of projection: 0 x, 1 y, 2 z
 uint triangle;
@@ -66,8 +63,6 @@ void toggle(ivec3 local) {
     if (axis == 1) imageAtomicXor(sheetY, texel, bits);
     if (axis == 2) imageAtomicXor(sheet, texel, bits);
 }
-#else
-void fill(ivec3 local, uint value) { accumulate(volumeFromLocal(axis, local), value); }
 #endif
 
 // Twice the signed area of (from, to, p) in the projection.
@@ -92,23 +87,6 @@ whole planeValue(whole3 normal, whole3 offset) {
 whole3 planeNormal(whole3 e, whole3 f) {
     precise whole3 normal = whole3(e.y * f.z - e.z * f.y, e.z * f.x - e.x * f.z, e.x * f.y - e.y * f.x);
     return normal;
-}
-
-#if VALUE != 0
-vec3 cornerAttribute(uint corner) {
-    uint vertex = 3u * corners[3u * triangle + corner];
-    return vec3(attributes[vertex], attributes[vertex + 1u], attributes[vertex + 2u]);
-}
-#endif
-
-uint interpolatedValue(whole3 weights) {
-#if VALUE != 0
-    vec3 w = max(vec3(weights), vec3(0.0));
-    w /= max(w.x + w.y + w.z, 1e-30);  // a triangle seen edge-on has no weights: its normal is 0
-    return encodeNormal(w.x * cornerAttribute(0u) + w.y * cornerAttribute(1u) + w.z * cornerAttribute(2u));
-#else
-    return LANE_MASK;
-#endif
 }
 
 #ifndef RULE_CONSERVATIVE
@@ -142,7 +120,7 @@ void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     // The grid is closed: a crossing on its far face belongs to the last voxel.
     if (w == size && planeValue(n, whole3(d, whole(w * 256) - a.z)) == 0) --w;
     if (w < 0 || w >= size) return;
-    fill(ivec3(pixel, w), interpolatedValue(areas));
+    accumulate(volumeFromLocal(axis, ivec3(pixel, w)), LANE_MASK);
 #endif
 }
 
@@ -181,6 +159,52 @@ bool overlaps(whole3 a, whole3 b, whole3 c, whole3 n, whole3 centre) {
     return !isSeparated(b - a, a, b, c) && !isSeparated(c - b, a, b, c) && !isSeparated(a - c, a, b, c);
 }
 
+#ifdef SUM_NORMALS
+
+layout(std430) restrict readonly buffer Attributes { float attributes[]; };
+
+vec3 cornerNormal(uint corner) {
+    uint vertex = 3u * corners[3u * triangle + corner];
+    return vec3(attributes[vertex], attributes[vertex + 1u], attributes[vertex + 2u]);
+}
+
+// What only touches the voxel counts for this much of a voxel's face: no voxel is without a normal.
+const float kLeastArea = 1.0 / 32768.0;
+const int kMostSides = 9;  // of a triangle that six planes cut
+
+// The triangle's normals times its area within the voxel, in faces of a voxel. It is cut by
+// the voxel's sides (Sutherland and Hodgman 1974) in shares of its corners, which are given from the
+// middle, in lattice units.
+vec3 normalWithin(mat3 offsets, float area) {
+    vec3 ring[kMostSides];
+    ring[0] = vec3(1.0, 0.0, 0.0);
+    ring[1] = vec3(0.0, 1.0, 0.0);
+    ring[2] = vec3(0.0, 0.0, 1.0);
+    int count = 3;
+    for (int side = 0; side < 6; ++side) {
+        vec3 before[kMostSides] = ring;
+        int n = count;
+        count = 0;
+        for (int i = 0; i < n; ++i) {
+            vec3 p = before[i];
+            vec3 q = before[i + 1 < n ? i + 1 : 0];
+            vec2 inwards = 128.0 + (side < 3 ? 1.0 : -1.0) * vec2((offsets * p)[side % 3], (offsets * q)[side % 3]);
+            if (inwards.x >= 0.0 && count < kMostSides) ring[count++] = p;
+            if ((inwards.x >= 0.0) == (inwards.y >= 0.0) || count == kMostSides) continue;
+            ring[count++] = mix(p, q, inwards.x / (inwards.x - inwards.y));
+        }
+    }
+    vec3 weights = vec3(kLeastArea / 3.0);
+    for (int i = 2; i < count; ++i) {
+        vec2 e = ring[i - 1].xy - ring[0].xy;
+        vec2 f = ring[i].xy - ring[0].xy;
+        weights += area * (e.x * f.y - e.y * f.x) / 3.0 * (ring[0] + ring[i - 1] + ring[i]);
+    }
+    return weights.x * cornerNormal(0u) + weights.y * cornerNormal(1u) + weights.z * cornerNormal(2u);
+}
+
+#endif
+
 void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
     int first = max((int(min(a.z, min(b.z, c.z))) - 1) >> 8, 0);
     int last = min(int(max(a.z, max(b.z, c.z))) >> 8, localFromVolume(axis, SIZE).z - 1);
@@ -193,10 +217,16 @@ void fillColumn(ivec2 pixel, whole2 p, whole3 a, whole3 b, whole3 c, whole3 n) {
         first = int(max(float(first), floor(float(centre - reach) / voxel) - 1.0));
         last = int(min(float(last), floor(float(centre + reach) / voxel) + 1.0));
     }
-    whole3 areas = whole3(edgeArea(b.xy, c.xy, p), edgeArea(c.xy, a.xy, p), edgeArea(a.xy, b.xy, p));
-    uint value = interpolatedValue(n.z < 0 ? -areas : areas);
     for (int w = first; w <= last; ++w) {
-        if (overlaps(a, b, c, n, whole3(p, whole(w * 256 + 128)))) fill(ivec3(pixel, w), value);
+        whole3 middle = whole3(p, whole(w * 256 + 128));
+        if (!overlaps(a, b, c, n, middle)) continue;
+        ivec3 voxel = volumeFromLocal(axis, ivec3(pixel, w));
+#ifdef SUM_NORMALS
+        mat3 offsets = mat3(vec3(a - middle), vec3(b - middle), vec3(c - middle));
+        addNormal(voxel, normalWithin(offsets, length(vec3(n)) / (2.0 * 256.0 * 256.0)));
+#else
+        accumulate(voxel, LANE_MASK);
+#endif
     }
 }
 

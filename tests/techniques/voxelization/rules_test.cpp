@@ -306,6 +306,57 @@ TEST_F(RulesTest, NormalsPointOutwards) {
     EXPECT_GT(worst, 0.99);  // a voxel is 1/31 of the radius
 }
 
+/// A box of six plates with normals of their own, each of `parts`² squares.
+scene::Mesh plates(const glm::vec3& low, const glm::vec3& high, int parts) {
+    scene::Mesh mesh;
+    for (Axis axis : kAxes) {
+        const glm::vec3 from = localFromVolume(axis, low),
+                        size = localFromVolume(axis, high) - from;
+        for (const float side : {0.0F, 1.0F}) {
+            for (int i = 0; i < parts * parts; ++i) {
+                const auto first = static_cast<unsigned>(mesh.positions.size());
+                for (int k = 0; k < 4; ++k) {
+                    const glm::vec3 at = glm::vec3(i % parts + k % 2, i / parts + k / 2, 0.0F) /
+                                         static_cast<float>(parts);
+                    mesh.positions.push_back(
+                        volumeFromLocal(axis, from + size * glm::vec3(at.x, at.y, side)));
+                    mesh.normals.push_back(
+                        volumeFromLocal(axis, glm::vec3(0.0F, 0.0F, 2.0F * side - 1.0F)));
+                }
+                mesh.triangles.emplace_back(first, first + 1, first + 2);
+                mesh.triangles.emplace_back(first + 3, first + 2, first + 1);
+            }
+        }
+    }
+    return mesh;
+}
+
+// In the voxel of an edge two plates have areas that are known, in a corner's three. The number of
+// triangles does not matter. Of their voxels' edges 3/4, 5/8 and 3/8 lie inside, along x, y and z.
+TEST_F(RulesTest, NormalsAreMeansByArea) {
+    const scene::Box box{glm::vec3(0.0F), glm::vec3(32.0F)};
+    const glm::vec3 corner(8.25F, 8.375F, 8.625F);
+    for (const int parts : {1, 3, 30}) {
+        const scene::Mesh mesh = plates(corner, corner + 15.0F, parts);
+        for (const Rule rule : {Rule::Thin, Rule::Conservative}) {
+            auto s = settings(32, rule, 32);
+            s.grid.value = VoxelValue::Normal;
+            const DenseGrid grid = voxelize(mesh, s, box).grid;
+            const auto expectMean = [&](const glm::ivec3& voxel, const glm::vec3& mean) {
+                ASSERT_TRUE(grid.isFull(voxel)) << parts;
+                const glm::vec3 found = decodeNormal(grid.value(voxel), 32);
+                EXPECT_LT(glm::length(found - glm::normalize(mean)), 0.001F) << parts;
+            };
+            expectMean({8, 12, 12}, {-1.0F, 0.0F, 0.0F});
+            expectMean({23, 12, 12}, {1.0F, 0.0F, 0.0F});
+            expectMean({12, 12, 8}, {0.0F, 0.0F, -1.0F});
+            expectMean({8, 8, 12}, {-0.625F, -0.75F, 0.0F});
+            expectMean({8, 12, 8}, {-0.375F, 0.0F, -0.75F});
+            expectMean({8, 8, 8}, {-0.625F * 0.375F, -0.75F * 0.375F, -0.75F * 0.625F});
+        }
+    }
+}
+
 TEST_F(RulesTest, DrawsOnceAFrameWhetherSplitOnceOrEachTime) {
     const scene::Mesh mesh = shapes::torus(glm::vec3(0.0F), 0.7F, 0.3F, 60, 30);
     auto s = settings(64, Rule::Rasterized);

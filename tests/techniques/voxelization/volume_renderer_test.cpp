@@ -222,6 +222,7 @@ TEST_F(GlTest, LookUpsDrawTheSamePicture) {
         for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {
             DrawSettings settings;
             settings.mode = mode;
+            settings.opacity = 0.5F;
             const auto drawn = [&] {
                 VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
                 renderer.draw(sheets, nullptr, nullptr);
