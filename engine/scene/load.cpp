@@ -18,8 +18,9 @@ struct Format {
 };
 
 constexpr Format kFormats[] = {
-    {".ply", &loadPly},  {".obj", &loadObj}, {".gltf", &loadGltf},
-    {".glb", &loadGltf}, {".off", &loadOff}, {".stl", &loadStl},
+    {".ply", &loadPly}, {".obj", &loadObj}, {".gltf", &loadGltf}, {".glb", &loadGltf},
+    {".off", &loadOff}, {".stl", &loadStl}, {".xyz", &loadXyz},   {".las", &loadLas},
+    {".laz", &loadLas},  // compressed: which its loader says
 };
 
 const Format& formatOf(const std::filesystem::path& path) {
@@ -27,7 +28,7 @@ const Format& formatOf(const std::filesystem::path& path) {
     const auto found = std::ranges::find(kFormats, extension, &Format::extension);
     if (found != std::end(kFormats)) return *found;
     throw Error(path.string() + ": unknown extension '" + extension +
-                "'; .ply, .obj, .gltf, .glb, .off and .stl are allowed");
+                "'; .ply, .obj, .gltf, .glb, .off, .stl, .xyz and .las are allowed");
 }
 
 /// Says what no surface has, of whichever format.

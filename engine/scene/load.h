@@ -18,7 +18,8 @@ constexpr float kMaxCoordinate = 1e9F;
 /// Throws Error for a file that loadScene() does not know by its extension.
 void requireKnownExtension(const std::filesystem::path& path);
 
-/// By extension (.ply .obj .gltf .glb .off .stl, any case); others are an Error that lists these.
+/// By extension (.ply .obj .gltf .glb .off .stl .xyz .las, any case); others are an Error that
+/// lists these.
 /// `origin` is Real, with the file's sha256.
 Scene loadScene(const std::filesystem::path& path);
 
@@ -34,6 +35,11 @@ Scene loadObj(const std::filesystem::path& path);
 Scene loadOff(const std::filesystem::path& path);
 /// STL, binary or in text: one mesh whose triangles share no vertices, so that each is flat.
 Scene loadStl(const std::filesystem::path& path);
+/// Points in text, one a line: "x y z", normals and colours behind it, by names of columns or by
+/// what the numbers are.
+Scene loadXyz(const std::filesystem::path& path);
+/// LAS 1.0 to 1.4, uncompressed, of the point formats 0 to 3 and 6 to 8: places and colours.
+Scene loadLas(const std::filesystem::path& path);
 /// glTF 2.0, text or binary, through tinygltf: node transforms, the default pose of skins and morph
 /// targets, materials, textures, cameras.
 Scene loadGltf(const std::filesystem::path& path);

@@ -112,6 +112,18 @@ TEST_F(Mutation, OfModelsAndPictures) {
     const fs::path off =
         folder.write("a.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n");
     expectAnswers(off, [&](std::mt19937&) { return Arguments{"scene", off}; });
+    const fs::path xyz = folder.write("a.xyz", "x y z r g b\n0 0 0 255 0 0\n1 0 0 0 255 0\n");
+    expectAnswers(xyz, [&](std::mt19937&) { return Arguments{"scene", xyz}; });
+    std::string points(227 + 2 * 20, '\0');  // LAS 1.2: the head, and two points
+    points.replace(0, 4, "LASF");
+    points[24] = 1;
+    points[25] = 2;
+    points[94] = points[96] = static_cast<char>(227);
+    points[105] = 20;
+    points[107] = 2;
+    for (const std::size_t scale : {131U, 139U, 147U}) points[scale + 7] = '\x3f';  // 2⁻¹⁵
+    const fs::path las = folder.write("a.las", points);
+    expectAnswers(las, [&](std::mt19937&) { return Arguments{"scene", las}; });
     const fs::path png = folder.path() / "a.png";
     image::writePng(png, image::Image8(8, 8, 3, std::uint8_t{128}));
     expectAnswers(png, [&](std::mt19937&) { return Arguments{"image", "info", png}; });

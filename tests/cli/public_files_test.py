@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 import sys
 
-MODELS = {".glb", ".gltf", ".hgt", ".obj", ".off", ".ply", ".stl", ".tif", ".tiff"}
+MODELS = {".glb", ".gltf", ".hgt", ".las", ".laz", ".obj", ".off", ".ply", ".stl", ".tif", ".tiff", ".xyz"}
 PICTURES = {".exr", ".hdr", ".jpeg", ".jpg", ".pbm", ".pfm", ".pgm", ".png", ".pnm", ".ppm", ".tga", ".tif", ".tiff"}
 OUTCOMES = ("read", "warned", "refused", "crashed", "hung")
 LIMIT_S = 60

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -353,6 +354,41 @@ TEST(LoaderFuzz, OffAndStl) {
                   "vertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n"),
         own.write("binary.stl", binary)};
     const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
+    const test::TemporaryFolder work;
+    std::uint64_t number = 0;
+    for (const fs::path& seed : all) {
+        for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
+    }
+}
+
+TEST(LoaderFuzz, Clouds) {
+    const test::TemporaryFolder own;
+    // LAS 1.4: a record before two points of format 8, far from the origin.
+    std::string las(375 + 60 + 2 * 38, '\0');
+    const auto put = [&](std::size_t at, auto value) {
+        std::memcpy(las.data() + at, &value, sizeof(value));
+    };
+    las.replace(0, 4, "LASF");
+    put(24, std::uint16_t{0x0401});
+    put(94, std::uint16_t{375});
+    put(96, std::uint32_t{435});
+    put(100, std::uint32_t{1});
+    put(104, std::uint8_t{8});
+    put(105, std::uint16_t{38});
+    for (const std::size_t at : {131U, 139U, 147U}) put(at, 0.01);
+    put(155, 500000.0);
+    put(247, std::uint64_t{2});
+    put(375 + 20, std::uint16_t{6});
+    put(435 + 38, std::uint32_t{77});
+    put(435 + 30, std::uint64_t{0x0102030405060708});
+    const std::vector<fs::path> all = {
+        own.write("a.las", las),
+        own.write("named.xyz",
+                  "//X Y Z Intensity R G B Nx Ny Nz\n500000.1 1 2 7 255 0 9 0 0 1\n"
+                  "500000.2 2 2 7 255 0 9 0 0.6 0.8\n"),
+        own.write("plain.xyz", "2\n# of\n0.5,1,2,255,128,0\n1,nan,2,0,0,1\n")};
+    const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
+    for (const fs::path& seed : all) EXPECT_FALSE(scene::loadScene(seed).points.colors.empty());
     const test::TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : all) {

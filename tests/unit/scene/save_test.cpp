@@ -73,8 +73,8 @@ TEST_F(SavePly, RefusesNothing) {
 
 TEST(LoadScene, ListsTheExtensions) {
     EXPECT_EQ(errorText([] { loadScene("model.fbx"); }),
-              "model.fbx: unknown extension '.fbx'; .ply, .obj, .gltf, .glb, .off and .stl are "
-              "allowed");
+              "model.fbx: unknown extension '.fbx'; .ply, .obj, .gltf, .glb, .off, .stl, .xyz and "
+              ".las are allowed");
 }
 
 Material unusualMaterial() {

@@ -324,10 +324,10 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     const auto unknown = Node::scalar("my.FBX", {config, 2, 3});
     EXPECT_EQ(test::errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file my.FBX: unknown extension '.fbx'; .ply, .obj, "
-              ".gltf, .glb, .off and .stl are allowed");
+              ".gltf, .glb, .off, .stl, .xyz and .las are allowed");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.fbx}]\n"),
               "DIR/scenes/m/x.yaml:3:18: file a.fbx: unknown extension '.fbx'; .ply, .obj, "
-              ".gltf, .glb, .off and .stl are allowed");
+              ".gltf, .glb, .off, .stl, .xyz and .las are allowed");
 }
 
 TEST(Catalog, TurnsAUsersModelUp) {
