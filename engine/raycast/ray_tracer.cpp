@@ -120,6 +120,67 @@ void collectSelected(const RTCFilterFunctionNArguments* arguments) {
     *arguments->valid = 0;
 }
 
+/// Weights of corners 1 and 2 at the point of a triangle that is nearest to p (Ericson 2004,
+/// Real-Time Collision Detection, Sec. 5.1.5).
+glm::vec2 nearestWeights(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b,
+                         const glm::vec3& c) {
+    const glm::vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0.0F && d2 <= 0.0F) return {0.0F, 0.0F};
+    const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0.0F && d4 <= d3) return {1.0F, 0.0F};
+    const float ofC = d1 * d4 - d3 * d2;
+    if (ofC <= 0.0F && d1 >= 0.0F && d3 <= 0.0F) return {d1 / (d1 - d3), 0.0F};
+    const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0.0F && d5 <= d6) return {0.0F, 1.0F};
+    const float ofB = d5 * d2 - d1 * d6;
+    if (ofB <= 0.0F && d2 >= 0.0F && d6 <= 0.0F) return {0.0F, d2 / (d2 - d6)};
+    const float ofA = d3 * d6 - d5 * d4;
+    if (ofA <= 0.0F && d4 >= d3 && d5 >= d6) {
+        const float t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return {1.0F - t, t};
+    }
+    return glm::vec2(ofB, ofC) / (ofA + ofB + ofC);
+}
+
+/// What a query for the nearest point has found so far.
+struct Nearest {
+    const std::vector<Placed>& placed;
+    const glm::vec3 point;
+    Hit hit = {};
+    bool isFound = false;
+
+    /// Whether the triangle is nearer than hit.distance; of equally near ones the first counts.
+    bool add(unsigned instance, unsigned triangle) {
+        const Placed& of = placed[instance];
+        const glm::uvec3& t = of.triangles[triangle];
+        const glm::vec3 &a = of.positions[t.x], &b = of.positions[t.y], &c = of.positions[t.z];
+        const glm::vec2 weights = nearestWeights(point, a, b, c);
+        const glm::vec3 position = a + weights.x * (b - a) + weights.y * (c - a);
+        const float distance = glm::length(position - point);
+        const unsigned number = of.firstTriangle + triangle;
+        if (!(distance <= hit.distance)) return false;
+        if (isFound && distance == hit.distance && number > hit.flattenedTriangle) return false;
+        const glm::vec3 normal = glm::cross(b - a, c - a);
+        hit = {distance,
+               position,
+               scene::unitOrZero(normal),
+               of.isMirrored ? glm::vec2(weights.y, weights.x) : weights,
+               instance,
+               triangle,
+               number};
+        isFound = true;
+        return true;
+    }
+};
+
+bool addNearest(RTCPointQueryFunctionArguments* arguments) {
+    auto& nearest = *static_cast<Nearest*>(arguments->userPtr);
+    if (!nearest.add(arguments->geomID, arguments->primID)) return false;
+    arguments->query->radius = nearest.hit.distance;
+    return true;
+}
+
 }  // namespace
 
 struct RayTracer::Impl {
@@ -246,6 +307,17 @@ std::optional<unsigned> RayTracer::occluder(const glm::vec3& origin, const glm::
     occluded(impl_->bvh.get(), ray, context.base, &rejectOthers);
     if (context.accepted == kNoTriangle) return std::nullopt;
     return context.accepted;
+}
+
+std::optional<Hit> RayTracer::nearest(const glm::vec3& point, float distanceAtMost) const {
+    RTCPointQuery query{point.x, point.y, point.z, 0.0F, distanceAtMost};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    Nearest nearest{impl_->placed, point};
+    nearest.hit.distance = distanceAtMost;
+    rtcPointQuery(impl_->bvh.get(), &query, &context, &addNearest, &nearest);
+    if (!nearest.isFound) return std::nullopt;
+    return nearest.hit;
 }
 
 WorldTriangle RayTracer::triangle(unsigned flattenedTriangle) const {

@@ -81,6 +81,10 @@ class RayTracer {
     std::optional<unsigned> occluder(const glm::vec3& origin, const glm::vec3& direction,
                                      float tMin, float tMax, Faces faces, unsigned ignored) const;
 
+    /// The point of a triangle that is nearest to `point`; none where all are farther than that.
+    std::optional<Hit> nearest(const glm::vec3& point,
+                               float distanceAtMost = std::numeric_limits<float>::infinity()) const;
+
     /// By its number in scene::flattened(scene).triangles.
     WorldTriangle triangle(unsigned flattenedTriangle) const;
 

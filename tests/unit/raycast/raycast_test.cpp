@@ -311,6 +311,56 @@ TEST(RayTracer, ColumnsThroughATorusCrossAnEvenNumberOfTimes) {
     }
 }
 
+/// Of a box of two mirrored halves, the nearest point is where each coordinate is clamped, or,
+/// inside, on the nearest face.
+TEST(RayTracer, NearestPointsAreOnTheNearestTriangle) {
+    scene::Mesh half;  // y and z from −1 to 1, x from 0 to 1, open at 0
+    half.positions = {{0, -1, -1}, {0, 1, -1}, {0, 1, 1}, {0, -1, 1},
+                      {1, -1, -1}, {1, 1, -1}, {1, 1, 1}, {1, -1, 1}};
+    half.triangles = {{4, 5, 6}, {4, 6, 7}, {0, 4, 7}, {0, 7, 3}, {1, 2, 6},
+                      {1, 6, 5}, {3, 7, 6}, {3, 6, 2}, {0, 1, 5}, {0, 5, 4}};
+    scene::Scene scene = scene::sceneOf(half);
+    scene.instances.push_back({0, glm::scale(glm::mat4(1.0F), glm::vec3(-1, 1, 1))});
+    const RayTracer tracer(scene);
+    Random random(7);
+    for (int i = 0; i < 1000; ++i) {
+        const glm::vec3 point = randomPoint(random, 3.0F);
+        const auto hit = tracer.nearest(point);
+        ASSERT_TRUE(hit);
+        const glm::vec3 clamped = glm::clamp(point, -1.0F, 1.0F), inside = 1.0F - glm::abs(point);
+        const bool isInside = clamped == point;
+        const float expected =
+            isInside ? std::min({inside.x, inside.y, inside.z}) : glm::distance(point, clamped);
+        EXPECT_NEAR(hit->distance, expected, 1e-5F);
+        EXPECT_TRUE(tracer.nearest(point, 1.001F * expected + 1e-5F));
+        EXPECT_FALSE(tracer.nearest(point, 0.999F * expected - 1e-5F));
+        EXPECT_NEAR(glm::distance(point, hit->position), expected, 1e-5F);
+        EXPECT_GT(glm::dot(hit->geometricNormal, hit->position), 0.999F) << "outwards";
+        const scene::Instance& instance = scene.instances[hit->instance];
+        const glm::uvec3 corners = half.triangles[hit->triangle];
+        const glm::vec2 weights = hit->barycentric;
+        const glm::vec3 local = half.positions[corners.x] * (1.0F - weights.x - weights.y) +
+                                half.positions[corners.y] * weights.x +
+                                half.positions[corners.z] * weights.y;
+        EXPECT_LT(glm::distance(glm::vec3(instance.worldFromMesh * glm::vec4(local, 1.0F)),
+                                hit->position),
+                  1e-5F);
+        EXPECT_EQ(hit->flattenedTriangle, 10 * hit->instance + hit->triangle);
+        const WorldTriangle triangle = tracer.triangle(hit->flattenedTriangle);
+        EXPECT_TRUE(isInside || triangle.isDrawnFrom(point) || expected < 1e-5F ||
+                    glm::dot(hit->geometricNormal, point - hit->position) > -1e-5F);
+    }
+    // Triangles without area are as near as their corners.
+    scene::Mesh line;
+    line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+    line.triangles = {{0, 1, 2}, {1, 1, 1}};
+    const auto hit = RayTracer(scene::sceneOf(line)).nearest({1.5F, 2, 0});
+    ASSERT_TRUE(hit);
+    EXPECT_FLOAT_EQ(hit->distance, 2.0F);
+    EXPECT_EQ(hit->geometricNormal, glm::vec3(0));
+    EXPECT_FALSE(RayTracer(scene::Scene{}).nearest({0, 0, 0}));
+}
+
 TEST(RayTracer, EmptySceneHasNoHits) {
     const RayTracer tracer{scene::Scene{}};
     EXPECT_FALSE(tracer.closestHit({0, 0, 0}, {0, 0, 1}));
