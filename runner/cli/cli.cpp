@@ -39,6 +39,7 @@ struct Options {
     std::vector<std::string> shards;  // run directories of merge and report
     ImageCommandOptions image;
     DataOptions data;
+    FileOptions file;
     std::vector<std::string> configs;  // that claims judges by
     std::string out;                   // of table, claims, report
     bool embeds = false;               // of report
@@ -355,6 +356,7 @@ int runCommand(int argc, const char* const* argv,
     addSensitivity(app, context, options);
     addTools(app, context, options);
     addDataCommands(app, context, options.data, options.command);
+    addFileCommands(app, context, options.file, options.command);
     addCompare(app, options.compare, options.command);
     addShell(app, options);
     arrangeHelp(app);

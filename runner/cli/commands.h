@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -191,6 +192,22 @@ int historyPage(const HistoryOptions& options);
 
 /// Adds them to the program's; `command` becomes the one that was chosen.
 void addDataCommands(CLI::App& app, const Context& context, DataOptions& options,
+                     std::function<int()>& command);
+
+/// Of a technique's own command.
+struct FileOptions {
+    std::string scene;
+    std::string out;
+    std::map<std::string, std::string> params;
+    std::string assets;
+    std::string device = "auto";
+};
+
+int writeFile(const Context& context, const technique::TechniqueInfo& technique,
+              const FileOptions& options);
+
+/// Adds those of all techniques to the program's; `command` becomes the one that was chosen.
+void addFileCommands(CLI::App& app, const Context& context, FileOptions& options,
                      std::function<int()>& command);
 
 struct ImageDiffOptions {

@@ -35,6 +35,7 @@ constexpr Place kPlaces[] = {
     {"describe", "look", "gfxrepro describe models/bunny"},
     {"check", "look", "gfxrepro check my-scene.yaml"},
     {"scene", "look", "gfxrepro scene models/bunny --render bunny.png"},
+    {"", "look", ""},  // those of techniques, which have their examples
     {"plan", "measure", "gfxrepro plan my-scene.yaml --profile quick"},
     {"run", "measure", "gfxrepro run my-scene.yaml --set resolution=64 --out my-run"},
     {"reproduce", "measure", "gfxrepro reproduce zju2005/2.1 --profile quick"},
@@ -53,9 +54,11 @@ constexpr Place kPlaces[] = {
 };
 
 std::size_t helpPlaceOf(const CLI::App& command) {
-    const auto* found = std::find_if(std::begin(kPlaces), std::end(kPlaces), [&](const Place& p) {
-        return p.command == command.get_name();
-    });
+    const auto placeOf = [](std::string_view name) {
+        return std::ranges::find(kPlaces, name, &Place::command);
+    };
+    const Place* found = placeOf(command.get_name());
+    if (found == std::end(kPlaces)) found = placeOf("");
     return static_cast<std::size_t>(found - std::begin(kPlaces));
 }
 
@@ -150,10 +153,10 @@ std::string entryLines(const std::string& name, const std::string& doc, std::siz
 
 void arrangeHelp(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({})) {
-        const std::size_t place = helpPlaceOf(*command);
-        if (place == std::size(kPlaces)) continue;
-        command->group(std::string(kPlaces[place].group));
-        command->footer(std::string(kPlaces[place].example));
+        if (command->get_group().empty()) continue;  // not shown
+        const Place& place = kPlaces[helpPlaceOf(*command)];
+        command->group(std::string(place.group));
+        if (!place.example.empty()) command->footer(std::string(place.example));
         for (CLI::App* part : command->get_subcommands({})) part->group(command->get_name());
     }
     setFormatter(app, std::make_shared<ScreenFormatter>());  // CLI11 wants it shared

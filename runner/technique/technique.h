@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "engine/core/params.h"
 #include "engine/gl/device.h"
@@ -146,6 +148,23 @@ class Technique {
     virtual void requireFrames(int frameCount) const;
     /// Of one that does not work in this process: recorded instead of what this one took.
     virtual std::optional<ProcessUsage> usageElsewhere() const { return std::nullopt; }
+    // Of one with a FileCommand.
+    /// Throws Error for a file that writeFile() does not write. Known without a device.
+    virtual void requireFile(const std::filesystem::path& /*path*/) const {}
+    /// Writes what the last render() made of the scene, and returns what there is to say of it.
+    virtual std::vector<std::string> writeFile(const std::filesystem::path& /*path*/) { return {}; }
+};
+
+/// A command that a technique brings, `gfxrepro NAME SCENE --out FILE`: what it makes of a scene,
+/// as a file.
+struct FileCommand {
+    std::string_view name;
+    std::string_view doc;
+    std::string_view files;                     // ".npy, .vox or .binvox"
+    std::string_view example;                   // a command line
+    std::span<const std::string_view> options;  // parameters of the technique
+    /// Values of others.
+    std::span<const std::pair<std::string_view, std::string_view>> fixed = {};
 };
 
 /// What `create` of a TechniqueInfo is.
@@ -167,6 +186,7 @@ struct TechniqueInfo {
     std::unique_ptr<Technique> (*createFrom)(const Node& program, Params& params) = nullptr;
     /// Its setup() may draw nothing: the device may be none.
     bool isOnCpu = false;
+    const FileCommand* fileCommand = nullptr;
 };
 
 /// The technique with the program of its config, null for none. Throws Error where it takes one and

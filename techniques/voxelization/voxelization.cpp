@@ -14,6 +14,7 @@
 #include "techniques/voxelization/phantom.h"
 #include "techniques/voxelization/reference.h"
 #include "techniques/voxelization/volume_renderer.h"
+#include "techniques/voxelization/voxel_files.h"
 
 namespace gfxrepro::voxelization {
 namespace {
@@ -388,6 +389,21 @@ class Voxelization final : public technique::Technique {
         drawing_.record(recorder);
     }
 
+    void requireFile(const std::filesystem::path& path) const override {
+        requireVoxelFile(path, params_.voxelizer.grid.layout.shape().longest());
+    }
+
+    std::vector<std::string> writeFile(const std::filesystem::path& path) override {
+        const VoxelModel model = voxelModelOf(grid()->read(), box_, *scene_);
+        std::vector<std::string> lines{fmt::format("voxels     {} of {}, {:g} wide",
+                                                   model.voxels.size(), model.shape.text(),
+                                                   model.voxelSize)};
+        for (const std::filesystem::path& written : writeVoxels(path, model)) {
+            lines.push_back("written    " + written.string());
+        }
+        return lines;
+    }
+
   private:
     /// That there is one, outside of the grid.
     void requireView(const scene::Scene& scene, const scene::Box& grid) const {
@@ -407,7 +423,8 @@ class Voxelization final : public technique::Technique {
     }
 
     void setupMesh(technique::SetupContext& context) {
-        input_.emplace(*context.scene);
+        scene_ = context.scene;
+        input_.emplace(*scene_);
         scene::Box bounds = input_->mesh().bounds();
         if (params_.combination.needsSecond()) {
             bounds.add(combination_.loadSecond(context, bounds));
@@ -426,7 +443,7 @@ class Voxelization final : public technique::Technique {
             const scene::Box shown = isInHead      ? headBounds(box_)
                                      : params_.box ? *params_.box
                                                    : bounds;
-            drawing_.setup(context, *context.scene, layout, box_, shown, showsBoth);
+            drawing_.setup(context, *scene_, layout, box_, shown, showsBoth);
         }
     }
 
@@ -475,6 +492,7 @@ class Voxelization final : public technique::Technique {
     }
 
     VoxelizationParams params_;
+    const scene::Scene* scene_ = nullptr;  // of a mesh
     std::optional<MeshInput> input_;
     scene::Box box_;
     std::unique_ptr<GridSource> source_;
@@ -546,11 +564,23 @@ config::Outputs outputs() {
         }};
 }
 
+constexpr std::string_view kFileOptions[] = {"resolution", "fill"};
+constexpr std::pair<std::string_view, std::string_view> kFileValues[] = {{"grid", "box"}};
+constexpr technique::FileCommand kVoxelize = {
+    .name = "voxelize",
+    .doc = "write a model as voxels, with normals and colours",
+    .files = ".npy, .vox or .binvox",
+    .example = "gfxrepro voxelize models/bunny --resolution 300 --out bunny.npy",
+    .options = kFileOptions,
+    .fixed = kFileValues};
+
 }  // namespace
 
 const technique::TechniqueInfo kVoxelization = {
-    "voxelization",
-    "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)",
-    technique::make<Voxelization>, outputs};
+    .name = "voxelization",
+    .summary = "real-time voxelization of triangle meshes with worksheets (zju2005, chapter 2)",
+    .create = technique::make<Voxelization>,
+    .outputs = outputs,
+    .fileCommand = &kVoxelize};
 
 }  // namespace gfxrepro::voxelization

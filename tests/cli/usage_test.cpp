@@ -76,6 +76,35 @@ TEST_F(Usage, WhatIsNotGivenIsNamedWithAnExample) {
               "gfxrepro plan my-scene.yaml --profile quick\n");
 }
 
+TEST_F(Usage, VoxelsThatCannotBeWritten) {
+    const std::string model = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const auto refused = [&](const std::string& scene, const std::string& out,
+                             const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments = {"voxelize", scene, "--out", out};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return refusal(arguments, folder);
+    };
+    const std::string dir = folder.path();
+    EXPECT_EQ(refused(model, dir + "/m.stl"),
+              "gfxrepro: DIR/m.stl: .npy, .vox and .binvox are allowed\n");
+    EXPECT_EQ(refused(model, model),
+              "gfxrepro: --out DIR/a.obj is the input DIR/a.obj; allowed: another file\n");
+    EXPECT_EQ(refused(model, dir + "/m.vox", {"--resolution", "512"}),
+              "gfxrepro: DIR/m.vox: a .vox file has up to 256 voxels along an axis, and the grid "
+              "512; allowed: .npy and .binvox\n");
+    EXPECT_EQ(refused(model, dir + "/m.npy", {"--resolution", "50000"}),
+              "gfxrepro: voxelize: resolution is 50000; allowed: 1 … 16384 voxels\n");
+    EXPECT_EQ(refused(model, dir + "/m.npy", {"--fill", "liquid"}),
+              "gfxrepro: voxelize: fill is liquid; allowed: surface | solid\n");
+    EXPECT_EQ(refused(dir + "/none.obj", dir + "/m.npy"),
+              "gfxrepro: scene file 'DIR/none.obj' is not there; looked at DIR/none.obj\n");
+    EXPECT_EQ(refused(folder.write("p.xyz", "0 0 0\n1 1 1\n"), dir + "/m.npy"),
+              "gfxrepro: scene 'p' (p.xyz) has no triangles, but 2 points; allowed to voxelize: "
+              "triangles that reach from one point to another\n");
+    EXPECT_EQ(refused(model, model + "/m.npy", {"--resolution", "32"}),
+              "gfxrepro: cannot write DIR/a.obj/m.npy: Not a directory\n");
+}
+
 TEST_F(Usage, BadKeyHasItsPlace) {
     const std::string config = folder.write("bad.yaml",
                                             "sweep_of: bad\ntitle: Bad\ntechnique: template\n"
