@@ -1,62 +1,58 @@
 #include "techniques/point_splatting/plain_points.h"
 
+#include <array>
+#include <limits>
 #include <vector>
 
 #include "engine/gpu_scene/gpu_mesh.h"
-#include "techniques/kit/draws.h"
 
 namespace gfxrepro::point_splatting {
+namespace {
+
+constexpr std::uint32_t kNothing = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
 
 PlainPoints::PlainPoints(const gl::ShaderLibrary& shaders, const ModelFile& model,
                          glm::ivec2 sizePx)
     : patches_(model.patches()),
       levels_(model.levels()),
-      pass_(shaders, {"point_splatting/plain_point.vert.glsl", "point_splatting/sprite.frag.glsl"},
-            gpu_scene::attributeDefines()),
+      sizePx_(sizePx),
+      nearest_(shaders, {"point_splatting/plain_point.vert.glsl"}, gpu_scene::attributeDefines()),
+      show_(shaders, {"kit/whole_image.vert.glsl", "point_splatting/plain_point.frag.glsl"},
+            {{"NOTHING", kNothing}}),
       positions_(gl::Buffer::of(model.positions())),
-      depth_(gl::Texture::make2D(GL_DEPTH_COMPONENT32F, sizePx)),
+      depths_(sizeof(std::uint32_t) * static_cast<std::size_t>(sizePx.x) *
+              static_cast<std::size_t>(sizePx.y)),
       output_(gl::Texture::make2D(GL_RGBA8, sizePx)) {
-    const std::vector<const gl::Texture*> output{&output_};
-    target_ = gl::Framebuffer(output, &depth_);
+    const std::array<const gl::Texture*, 1> output{&output_};
+    target_ = gl::Framebuffer(output);
     array_.setAttribute(gpu_scene::kPosition, positions_, 3);
 }
 
 void PlainPoints::render(std::span<const DrawnPatch> drawn, const PatchView& view,
                          gl::Profiler& profiler) {
+    GFXREPRO_ASSERT(view.sizePx == sizePx_);
     const gl::GpuScope scope(profiler, "points");
-    target_.clearColour(0, glm::vec4(0.0F));
-    target_.clearDepth(1.0F);
-    target_.bind();
-    glDisable(GL_BLEND);
-    glEnable(GL_PROGRAM_POINT_SIZE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glDepthMask(GL_TRUE);
-    pass_.set("clipFromModel", view.clipFromWorld());
-    pass_.use({});
-    array_.bind();
     std::vector<GLint> firsts;
     std::vector<GLsizei> counts;
-    std::uint32_t batch = 0;
-    kit::FlushedDraws flushes;
-    const auto issue = [&] {
-        if (firsts.empty()) return;
-        glMultiDrawArrays(GL_POINTS, firsts.data(), counts.data(),
-                          static_cast<GLsizei>(firsts.size()));
-        flushes.drawn(batch);
-        firsts.clear();
-        counts.clear();
-        batch = 0;
-    };
     for (const DrawnPatch& item : drawn) {
         const Patch& patch = patches_[item.patch];
         firsts.push_back(static_cast<GLint>(patch.firstPoint));
         counts.push_back(static_cast<GLsizei>(levels_[patch.firstLevel + item.level].count));
-        batch += static_cast<std::uint32_t>(counts.back());
-        if (batch >= flushes.mostPrimitives()) issue();
     }
-    issue();
-    glDisable(GL_PROGRAM_POINT_SIZE);
+    depths_.clear(kNothing);
+    target_.bind();
+    nearest_.set("clipFromModel", view.clipFromWorld());
+    nearest_.set("sizePx", sizePx_);
+    nearest_.use({{"Depths", depths_}});
+    array_.bind();
+    glEnable(GL_RASTERIZER_DISCARD);
+    glMultiDrawArrays(GL_POINTS, firsts.data(), counts.data(), static_cast<GLsizei>(firsts.size()));
+    glDisable(GL_RASTERIZER_DISCARD);
+    show_.set("sizePx", sizePx_);
+    show_.use({{"Depths", depths_}});
+    wholeImage_.draw();
 }
 
 }  // namespace gfxrepro::point_splatting

@@ -24,7 +24,8 @@ constexpr Choice<Method> kMethods[] = {
     {Method::Reconstruction, "reconstruction", "the reconstruction filter alone everywhere"},
     {Method::LowPass, "low_pass", "the low-pass filter alone everywhere"},
     {Method::Sprites, "sprites", "opaque squares, as QSplat"},
-    {Method::GlPoints, "gl_points", "one white pixel per point, by a plain draw of positions"},
+    {Method::PlainPoints, "plain_points",
+     "one white pixel per point, by an atomic minimum of depths: the least that points cost"},
 };
 constexpr Choice<PointStorage> kStorages[] = {
     {PointStorage::Compressed, "compressed", "8 bytes per point (table 3.1)"},
@@ -48,7 +49,7 @@ std::optional<SplatMode> fixedMode(Method method) {
         case Method::LowPass:
             return SplatMode::LowPass;
         case Method::Sprites:
-        case Method::GlPoints:
+        case Method::PlainPoints:
             return SplatMode::Sprite;
     }
     return std::nullopt;
@@ -164,7 +165,7 @@ PointSplattingParams::PointSplattingParams(Params& params)
     if (method != Method::Adaptive) {
         params.refuseGiven({"c_min", "c_max"}, "'method: adaptive'");
     }
-    if (method == Method::GlPoints) {
+    if (method == Method::PlainPoints) {
         params.refuseGiven({"storage", "low_pass_radius_px", "cutoff", "visibility_offset"},
                            "a method of splats");
     }
@@ -269,7 +270,7 @@ void PointSplatting::setup(technique::SetupContext& context) {
     framedBox_ = framedBox(*model_);
     views_.cameras = context.scene->cameras;
     views_.paths = context.scene->paths;
-    if (params_.method == Method::GlPoints) {
+    if (params_.method == Method::PlainPoints) {
         renderer_ = std::make_unique<PlainPoints>(context.shaders, *model_, sizePx_);
     } else {
         auto splats =

@@ -19,8 +19,8 @@ enum class Method {
     FullEwa,
     Reconstruction,
     LowPass,
-    Sprites,   // opaque squares, as QSplat
-    GlPoints,  // one pixel per point, by a plain draw
+    Sprites,      // opaque squares, as QSplat
+    PlainPoints,  // one pixel per point
 };
 
 /// From where a model is seen: on a turntable, from as far as frames it, or by a camera or along a
@@ -127,7 +127,7 @@ class PointSplatting final : public technique::Technique {
     scene::Box framedBox_;
     scene::Scene views_;  // the scene's cameras and paths
     std::unique_ptr<PointRenderer> renderer_;
-    const SplatRenderer* splats_ = nullptr;  // the same; not of Method::GlPoints
+    const SplatRenderer* splats_ = nullptr;  // the same; not of Method::PlainPoints
 
     PatchView view_;  // of the last frame
     scene::Camera camera_;

@@ -420,7 +420,8 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
     // The same levels and filters of 60 bytes per point.
     SplatSettings splats = params_.splats;
     splats.storage = PointStorage::Uncompressed;
-    if (params_.splats.storage == PointStorage::Compressed && params_.method != Method::GlPoints) {
+    if (params_.splats.storage == PointStorage::Compressed &&
+        params_.method != Method::PlainPoints) {
         compareDrawn(splats, params_.selection, "uncompressed");
     }
 }

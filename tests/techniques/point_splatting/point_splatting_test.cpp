@@ -65,7 +65,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{level: all, fine_radius_px: 1}", "30: 'fine_radius_px' needs 'level: by_size'"},
             {"{silhouette_deg: 91}",
              "18: technique 'point_splatting': silhouette_deg is 91; allowed: 0 … 90 °"},
-            {"{method: gl_points, cutoff: 3}", "29: 'cutoff' needs a method of splats"},
+            {"{method: plain_points, cutoff: 3}", "32: 'cutoff' needs a method of splats"},
             {"{c_min: 4}", "9: c_min 4 is above c_max 3"},
             {"{patch_points_max: 10}", "1: patch_points_min 64 is above patch_points_max 10"},
             {"{distance: 0}",
@@ -75,7 +75,7 @@ TEST(PointSplattingParamsTest, RefusesWhatMeansNothing) {
             {"{view: front, distance: 2}", "25: 'distance' needs a 'view' that frames it"},
             {"{method: splats}",
              "10: technique 'point_splatting': method is splats; allowed: adaptive | full_ewa | "
-             "reconstruction | low_pass | sprites | gl_points"},
+             "reconstruction | low_pass | sprites | plain_points"},
             {"{storge: compressed}",
              "2: technique 'point_splatting': unknown parameter 'storge'; did you mean 'storage'?"},
         });
@@ -141,7 +141,7 @@ TEST_F(PointSplattingTest, PlainPointsAreAsManyAsSpritesAndAPixelEach) {
                                     method),
                         &scene);
     };
-    const test::MetricRecorder plain = drawn("gl_points");
+    const test::MetricRecorder plain = drawn("plain_points");
     EXPECT_EQ(passes_, (std::vector<std::string>{"selection", "points"}));
     const test::MetricRecorder sprites = drawn("sprites");
     EXPECT_EQ(plain.metrics.at("drawn_points"), sprites.metrics.at("drawn_points"));
@@ -150,8 +150,8 @@ TEST_F(PointSplattingTest, PlainPointsAreAsManyAsSpritesAndAPixelEach) {
     const int pixels = coveredPixels(plain.images.at("image"));
     EXPECT_GT(pixels, 1000);
     EXPECT_LE(pixels, static_cast<int>(plain.metrics.at("drawn_points")));
-    EXPECT_EQ(errorText([&] { recorded("{method: gl_points, storage: compressed}", &scene); }),
-              "case.yaml:1:30: 'storage' needs a method of splats");
+    EXPECT_EQ(errorText([&] { recorded("{method: plain_points, storage: compressed}", &scene); }),
+              "case.yaml:1:33: 'storage' needs a method of splats");
 }
 
 TEST_F(PointSplattingTest, CullingDropsNothingThatIsVisible) {

@@ -2,7 +2,9 @@
 #include "techniques/point_splatting/splat_renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
+#include <limits>
 
 #include "tests/techniques/point_splatting/splat_fixture.h"
 #include "tests/techniques/point_splatting/splat_math.h"
@@ -402,6 +404,52 @@ TEST_F(SplatTest, NothingDrawnIsAnEmptyPicture) {
     SplatRenderer renderer(shaders, model, {}, kSize);
     EXPECT_GT(coveredPixelsOf(render(renderer, everything(model, SplatMode::Sprite), view)), 1000);
     EXPECT_EQ(coveredPixelsOf(render(renderer, {}, view)), 0);
+}
+
+/// The nearest of each pixel, against the same on the host; nothing of what lies beyond the view.
+TEST_F(SplatTest, PlainPointsLeaveTheNearestOfEachPixel) {
+    constexpr glm::ivec2 kWide(48, 40);
+    constexpr float kDistance = 4.0F;
+    const PatchView view = viewFrom(kDistance, kWide, 1.0F);
+    Random random(17);
+    scene::PointCloud points;
+    std::vector<float> nearest(48 * 40, std::numeric_limits<float>::infinity());
+    for (int i = 0; i < 6000; ++i) {
+        // Clearly in a pixel, of the window or beside it, before, in and behind the view.
+        const glm::ivec2 pixel{static_cast<int>(random.index(56)) - 4,
+                               static_cast<int>(random.index(48)) - 4};
+        const glm::vec2 within{random.uniform(0.1F, 0.9F), random.uniform(0.1F, 0.9F)};
+        const float depth = random.uniform(-1.0F, 18.0F);
+        const glm::vec2 slope =
+            (glm::vec2(pixel) + within - 0.5F * glm::vec2(kWide)) / view.focalPx;
+        points.positions.emplace_back(slope * depth, kDistance - depth);
+        points.normals.emplace_back(0.0F, 0.0F, 1.0F);
+        points.radii.push_back(0.01F);
+        const bool isSeen = depth > view.nearM && depth < view.farM && pixel.x >= 0 &&
+                            pixel.x < kWide.x && pixel.y >= 0 && pixel.y < kWide.y;
+        if (!isSeen) continue;
+        float& least = nearest[static_cast<std::size_t>(pixel.y * kWide.x + pixel.x)];
+        least = std::min(least, depth);
+    }
+    const ModelFile model = modelOf(points);
+    PlainPoints plain(shaders, model, kWide);
+    gl::Profiler profiler(true);
+    // Twice: nothing of the first frame may be left.
+    plain.render(everything(model, SplatMode::Sprite), viewFrom(3.0F, kWide), profiler);
+    plain.render(everything(model, SplatMode::Sprite), view, profiler);
+    const Picture picture = pictureOf(plain.output());
+    const std::vector<float> depths = plain.depths().read<float>(nearest.size());
+    int seen = 0;
+    for (std::size_t i = 0; i < nearest.size(); ++i) {
+        const bool isSeen = std::isfinite(nearest[i]);
+        seen += isSeen ? 1 : 0;
+        ASSERT_EQ(picture.pixels[i], glm::u8vec4(isSeen ? 255 : 0)) << i;
+        if (isSeen) ASSERT_NEAR(depths[i], nearest[i], 1e-5F * nearest[i]) << i;
+    }
+    EXPECT_GT(seen, 1000);
+    EXPECT_LT(seen, 1900);
+    plain.render({}, view, profiler);
+    EXPECT_EQ(coveredPixelsOf(pictureOf(plain.output())), 0);
 }
 
 TEST_F(SplatTest, ALevelIsAPrefixWithItsOwnRadii) {
