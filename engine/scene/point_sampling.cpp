@@ -75,52 +75,6 @@ Eigensystem eigensystem(const glm::dmat3& symmetric) {
 
 namespace {
 
-/// A triangle in the world with what is interpolated over it.
-struct Surfel {
-    glm::vec3 positions[3], normals[3], colors[3];
-    double area = 0.0;
-    bool isColored = false;
-};
-
-std::vector<Surfel> surfelsOf(const Scene& scene) {
-    std::vector<Surfel> surfels;
-    surfels.reserve(scene.triangleCount());
-    for (const Instance& instance : scene.instances) {
-        const Mesh& whole = scene.meshes[static_cast<std::size_t>(instance.mesh)];
-        const Mesh flat = whole.isFlat ? withTriangleNormals(whole) : Mesh{};
-        const Mesh& mesh = whole.isFlat ? flat : whole;
-        const glm::mat3 linear(instance.worldFromMesh);
-        const glm::mat3 toWorld = glm::transpose(glm::inverse(linear));
-        const glm::vec3 base(materialOf(scene, mesh).baseColor);
-        const bool isColored =
-            !mesh.colors.empty() || (mesh.material >= 0 && base != glm::vec3(1.0F));
-        const std::vector<glm::vec3> normals =
-            mesh.normals.empty() ? vertexNormals(mesh) : mesh.normals;
-        for (const glm::uvec3& triangle : mesh.triangles) {
-            Surfel surfel;
-            surfel.isColored = isColored;
-            for (int k = 0; k < 3; ++k) {
-                const std::size_t v = triangle[k];
-                surfel.positions[k] =
-                    glm::vec3(instance.worldFromMesh * glm::vec4(mesh.positions[v], 1.0F));
-                surfel.colors[k] = mesh.colors.empty() ? base : base * mesh.colors[v];
-            }
-            const glm::vec3 cross = glm::cross(surfel.positions[1] - surfel.positions[0],
-                                               surfel.positions[2] - surfel.positions[0]);
-            surfel.area = 0.5 * static_cast<double>(glm::length(cross));
-            for (int k = 0; k < 3; ++k) surfel.normals[k] = toWorld * normals[triangle[k]];
-            surfels.push_back(surfel);
-        }
-    }
-    return surfels;
-}
-
-template <class T>
-T blended(const T (&values)[3], const glm::vec2& weights) {
-    return values[0] * (1.0F - weights.x - weights.y) + values[1] * weights.x +
-           values[2] * weights.y;
-}
-
 /// Element `index` of the R₂ sequence, folded into the triangle.
 glm::vec2 barycentricsAt(std::size_t index) {
     constexpr double kPlastic = 1.32471795724474602596;
@@ -147,34 +101,72 @@ std::uint64_t mortonCode(const glm::vec3& unitPosition) {
 
 }  // namespace
 
+Mesh surfaceOf(const Scene& scene) {
+    Mesh surface;
+    bool isColored = false;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& whole = scene.meshes[static_cast<std::size_t>(instance.mesh)];
+        const Mesh flat = whole.isFlat ? withTriangleNormals(whole) : Mesh{};
+        const Mesh& mesh = whole.isFlat ? flat : whole;
+        const glm::mat3 linear(instance.worldFromMesh);
+        const glm::mat3 toWorld = glm::transpose(glm::inverse(linear));
+        const glm::vec3 base(materialOf(scene, mesh).baseColor);
+        isColored =
+            isColored || !mesh.colors.empty() || (mesh.material >= 0 && base != glm::vec3(1.0F));
+        const std::vector<glm::vec3> normals =
+            mesh.normals.empty() ? vertexNormals(mesh) : mesh.normals;
+        const auto first = static_cast<std::uint32_t>(surface.positions.size());
+        for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+            surface.positions.emplace_back(instance.worldFromMesh *
+                                           glm::vec4(mesh.positions[v], 1.0F));
+            surface.normals.push_back(toWorld * normals[v]);
+            surface.colors.push_back(mesh.colors.empty() ? base : base * mesh.colors[v]);
+        }
+        const bool isMirrored = glm::determinant(linear) < 0.0F;
+        for (glm::uvec3 triangle : mesh.triangles) {
+            if (isMirrored) std::swap(triangle.y, triangle.z);
+            surface.triangles.push_back(triangle + first);
+        }
+    }
+    if (!isColored) surface.colors.clear();
+    return surface;
+}
+
 PointCloud sampledPoints(const Scene& scene, std::size_t count) {
     if (count == 0) throw Error("0 points wanted of a surface; allowed: at least 1");
-    const std::vector<Surfel> surfels = surfelsOf(scene);
+    PointCloud points;
+    points.surface = surfaceOf(scene);
+    const Mesh& surface = points.surface;
+    const auto areaOf = [&](const glm::uvec3& triangle) {
+        const glm::vec3& corner = surface.positions[triangle.x];
+        return 0.5 *
+               static_cast<double>(glm::length(glm::cross(surface.positions[triangle.y] - corner,
+                                                          surface.positions[triangle.z] - corner)));
+    };
     double area = 0.0;
-    for (const Surfel& surfel : surfels) area += surfel.area;
+    for (const glm::uvec3& triangle : surface.triangles) area += areaOf(triangle);
     if (!(area > 0.0)) {
         throw Error(fmt::format("scene '{}' has no surface to take points from", scene.name));
     }
+    points.whole = surface.bounds();
     const double step = area / static_cast<double>(count);
-    PointCloud points;
     points.positions.reserve(count);
     points.normals.reserve(count);
-    points.colors.reserve(count);
-    double passed = 0.0;  // area before the surfel
-    bool isColored = false;
-    for (const Surfel& surfel : surfels) {
-        passed += surfel.area;
+    if (!surface.colors.empty()) points.colors.reserve(count);
+    double passed = 0.0;  // area before the triangle
+    for (const glm::uvec3& triangle : surface.triangles) {
+        passed += areaOf(triangle);
         // The last point is due by rounding even where the sum falls short of it.
         while (points.positions.size() < count &&
                (static_cast<double>(points.positions.size()) + 0.5) * step < passed) {
             const glm::vec2 weights = barycentricsAt(points.positions.size());
-            points.positions.push_back(blended(surfel.positions, weights));
-            points.normals.push_back(unitOrZero(blended(surfel.normals, weights)));
-            points.colors.push_back(blended(surfel.colors, weights));
-            isColored = isColored || surfel.isColored;
+            points.positions.push_back(interpolated(surface.positions, triangle, weights));
+            points.normals.push_back(unitOrZero(interpolated(surface.normals, triangle, weights)));
+            if (!surface.colors.empty()) {
+                points.colors.push_back(interpolated(surface.colors, triangle, weights));
+            }
         }
     }
-    if (!isColored) points.colors.clear();
     // Small triangles in any order leave points nearly at random: discs of 4 times their share of
     // the area, up to 1.5 radii, leave e⁻⁹ of it bare; with 1.5 times the radius it would be e⁻⁵,
     // and close-ups would have pinholes.
@@ -199,6 +191,7 @@ PointCloud thinnedPoints(const PointCloud& points, std::size_t count) {
     const auto grown = static_cast<float>(
         std::sqrt(static_cast<double>(all) / static_cast<double>(std::max<std::size_t>(count, 1))));
     PointCloud thinned;
+    thinned.whole = box;
     for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = order[k * all / count];
         thinned.positions.push_back(points.positions[i]);

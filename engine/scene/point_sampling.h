@@ -41,11 +41,15 @@ struct Eigensystem {
 /// Jacobi's method.
 Eigensystem eigensystem(const glm::dmat3& symmetric);
 
+/// All instances as one mesh in world space, whose attributes points of it have. Normals are the
+/// meshes' own (area-weighted ones where a mesh has none: a scan is smooth), of any length; colours
+/// are of material times vertex (none without either, or all white; textures are not read).
+Mesh surfaceOf(const Scene& scene);
+
 /// `count` points on the triangles of a scene: evenly by area, and within a triangle by the R₂
-/// sequence (Roberts 2018). Normals interpolated (area-weighted ones where the mesh has none: a
-/// scan is smooth), colours of material times vertex (none without either, or all white; textures
-/// are not read), radii twice those of discs that together have the surface's area: neighbours
-/// overlap. Same input, same bytes. Throws Error for scenes without area and for no points.
+/// sequence (Roberts 2018). Normals and colours are interpolated over surfaceOf(), which they keep,
+/// radii are twice those of discs that together have the surface's area: neighbours overlap. Same
+/// input, same bytes. Throws Error for scenes without area and for no points.
 PointCloud sampledPoints(const Scene& scene, std::size_t count);
 
 /// `count` of the points, at equal steps along a space-filling curve (Morton order); all of them

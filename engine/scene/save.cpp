@@ -336,6 +336,8 @@ class GlbBuilder {
     tinygltf::Model model_;
 };
 
+constexpr const char* kSurface = "the surface that points were taken of";
+
 }  // namespace
 
 std::vector<std::string> savePly(const std::filesystem::path& path, const Scene& scene) {
@@ -367,6 +369,7 @@ std::vector<std::string> savePly(const std::filesystem::path& path, const Scene&
         return leftOut.lines();
     }
     const PointCloud& points = scene.points;
+    leftOut.add(kSurface, points.surface.triangles.empty() ? 0 : 1);
     if (points.positions.empty()) {
         throw Error("cannot write " + path.string() + ": the scene has no triangles and no points");
     }
@@ -393,6 +396,7 @@ std::vector<std::string> saveGlb(const std::filesystem::path& path, const Scene&
     LeftOut leftOut;
     leftOut.add("a height map", scene.heights ? 1 : 0);
     leftOut.add("the radius of a point", scene.points.radii.size());
+    leftOut.add(kSurface, scene.points.surface.triangles.empty() ? 0 : 1);
     return leftOut.lines();
 }
 

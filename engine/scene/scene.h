@@ -99,8 +99,12 @@ struct PointCloud {
     std::vector<glm::vec3> normals;
     std::vector<float> radii;
     std::vector<glm::vec3> colors;  // linear
+    Mesh surface = {};  // that they were taken of, in world space (surfaceOf()); empty: not known
+    Box whole = {};     // of the surface or the cloud that they were taken of; empty: their own
 
-    Box bounds() const;
+    Box bounds() const;  // of the positions
+    /// What a camera frames: the same, however many points were taken.
+    Box framed() const { return whole.isEmpty() ? bounds() : whole; }
 };
 
 /// A perspective camera that looks along −z of its own frame.
@@ -195,6 +199,13 @@ glm::dvec3 offsetOf(const Box& box);
 /// the inverse transpose; mirrored instances keep their outside). A single instance with the
 /// identity is a plain copy.
 Mesh flattened(const Scene& scene);
+
+/// Of a vertex attribute at weights of the triangle's vertices 1 and 2.
+template <class T>
+T interpolated(const std::vector<T>& values, const glm::uvec3& triangle, const glm::vec2& weights) {
+    return values[triangle.x] * (1.0F - weights.x - weights.y) + values[triangle.y] * weights.x +
+           values[triangle.z] * weights.y;
+}
 
 /// A scene of one mesh with one instance.
 Scene sceneOf(Mesh mesh);

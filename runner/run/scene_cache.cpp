@@ -35,7 +35,7 @@ std::size_t sizeBytesOf(const scene::Scene& scene) {
     const scene::PointCloud& points = scene.points;
     sizeBytes += (points.positions.size() + points.normals.size() + points.colors.size()) *
                      sizeof(glm::vec3) +
-                 points.radii.size() * sizeof(float);
+                 points.radii.size() * sizeof(float) + points.surface.sizeBytes();
     if (scene.heights) sizeBytes += scene.heights->heightsM.size() * sizeof(float);
     return sizeBytes;
 }
@@ -103,9 +103,10 @@ class SceneBytes {
         GFXREPRO_ASSERT(!heights);  // they have files of their own
         GFXREPRO_ASSERT(filesBeside.empty());
         auto& [kind, description, sha256] = origin;
-        auto& [positions, normals, radii, colors] = points;
+        auto& [positions, normals, radii, colors, surface, whole] = points;
         all(name, kind, description, sha256, meshes, materials, textures, samplings, instances,
-            positions, normals, radii, colors, cameras, paths, lights, motions, warnings, offset);
+            positions, normals, radii, colors, surface, whole, cameras, paths, lights, motions,
+            warnings, offset);
     }
     void take(scene::Mesh& mesh) {
         auto& [name, positions, normals, texcoords, colors, triangles, material, isFlat] = mesh;

@@ -221,7 +221,6 @@ PointModel buildModel(const scene::PointCloud& points, const TreeSettings& setti
         patch.firstLevel = static_cast<std::uint32_t>(model.levels.size());
         patch.levelCount = static_cast<std::uint32_t>(levels[p].size());
         model.levels.insert(model.levels.end(), levels[p].begin(), levels[p].end());
-        model.bounds.add(patch.bounds);
     }
     model.positions.resize(count);
     model.normals.resize(count);
@@ -239,7 +238,7 @@ PointModel buildModel(const scene::PointCloud& points, const TreeSettings& setti
 
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr const char* kMagic = "gfxpoint";
 constexpr std::size_t kAlignment = 64;
 
@@ -248,7 +247,6 @@ constexpr std::size_t kSections = 8;
 
 struct Header {
     kit::FileStamp stamp;
-    scene::Box bounds;
     std::uint64_t sizeBytes;  // of the whole file: a cut-off one is known by it
     struct {
         std::uint64_t offsetBytes, sizeBytes;
@@ -288,7 +286,6 @@ std::string serialized(const PointModel& model, const std::string& key) {
 
     Header header{};
     header.stamp = {kMagic, kVersion, key};
-    header.bounds = model.bounds;
     std::size_t offset = aligned(sizeof header);
     for (std::size_t s = 0; s < kSections; ++s) {
         header.sections[s] = {offset, sections[s].size()};
@@ -452,9 +449,6 @@ std::span<const glm::u8vec4> ModelFile::colors() const {
 }
 std::span<const float> ModelFile::radiusTable() const {
     return content_->section<float>(kTable);
-}
-const scene::Box& ModelFile::bounds() const {
-    return content_->header.bounds;
 }
 
 }  // namespace gfxrepro::point_splatting

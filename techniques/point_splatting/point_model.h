@@ -59,7 +59,6 @@ struct PointModel {
     std::vector<glm::vec3> colors;  // linear
     std::vector<Patch> patches;
     std::vector<Level> levels;
-    scene::Box bounds;
 };
 
 /// Splits subtrees through their mean, across the principal axis (in halves where all points fall
@@ -92,7 +91,6 @@ class ModelFile {
     std::span<const float> radii() const;
     std::span<const glm::u8vec4> colors() const;  // sRGB; empty: the data has none
     std::span<const float> radiusTable() const;
-    const scene::Box& bounds() const;
 
     bool wasBuilt() const { return wasBuilt_; }  // by openOrBuild(), else found
 

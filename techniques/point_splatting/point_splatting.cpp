@@ -189,10 +189,10 @@ PointSplattingParams::PointSplattingParams(Params& params)
 
 namespace {
 
-/// The points' box; grown by a splat where all of it is not larger than one.
-scene::Box framedBox(const ModelFile& model) {
-    scene::Box box = model.bounds();
-    const float radius = *std::max_element(model.radii().begin(), model.radii().end());
+/// What a camera frames; grown by a splat where all of it is not larger than one.
+scene::Box framedBox(const scene::PointCloud& points) {
+    scene::Box box = points.framed();
+    const float radius = *std::max_element(points.radii.begin(), points.radii.end());
     if (glm::length(box.size()) < radius) {
         box.min -= radius;
         box.max += radius;
@@ -267,7 +267,7 @@ void PointSplatting::setup(technique::SetupContext& context) {
     const std::chrono::duration<double, std::milli> elapsed =
         std::chrono::steady_clock::now() - begin;
     preprocessMs_ = elapsed.count();
-    framedBox_ = framedBox(*model_);
+    framedBox_ = framedBox(points);
     views_.cameras = context.scene->cameras;
     views_.paths = context.scene->paths;
     if (params_.method == Method::PlainPoints) {

@@ -430,13 +430,6 @@ namespace {
 
 constexpr float kLeastFacing = 1e-3F;  // as in texturedNormal() of shaders/shading.glsl
 
-template <class T>
-T interpolated(const std::vector<T>& values, const glm::uvec3& triangle,
-               const glm::vec2& barycentric) {
-    return (1.0F - barycentric.x - barycentric.y) * values[triangle.x] +
-           barycentric.x * values[triangle.y] + barycentric.y * values[triangle.z];
-}
-
 /// Between the texels of a level, or the nearest one, as fetchedTexel() of shaders/shading.glsl.
 glm::vec3 texelOf(const image::Image8& texels, TexelKind kind, const scene::Sampling& sampling,
                   const glm::vec2& texcoord, bool isMagnified) {
@@ -510,10 +503,11 @@ glm::vec3 ReflectiveScene::albedoAt(std::uint32_t triangle, const glm::vec2& bar
     const glm::uvec3 corners = geometry_.triangles[triangle];
     const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
     const glm::vec3 albedo =
-        object.baseColor * interpolated(geometry_.colors, corners, barycentric);
+        object.baseColor * scene::interpolated(geometry_.colors, corners, barycentric);
     if (object.textureLayer < 0) return albedo;
     return albedo * texelsAt(textureLayers_, object.textureLayer,
-                             interpolated(geometry_.texcoords, corners, barycentric), footprint);
+                             scene::interpolated(geometry_.texcoords, corners, barycentric),
+                             footprint);
 }
 
 glm::vec3 ReflectiveScene::emissiveAt(std::uint32_t triangle, const glm::vec2& barycentric,
@@ -521,9 +515,10 @@ glm::vec3 ReflectiveScene::emissiveAt(std::uint32_t triangle, const glm::vec2& b
     const Object& object = objects_[geometry_.objectOfTriangle[triangle]];
     if (object.emissiveLayer < 0) return object.emissive;
     return object.emissive *
-           texelsAt(textureLayers_, object.emissiveLayer,
-                    interpolated(geometry_.texcoords, geometry_.triangles[triangle], barycentric),
-                    footprint);
+           texelsAt(
+               textureLayers_, object.emissiveLayer,
+               scene::interpolated(geometry_.texcoords, geometry_.triangles[triangle], barycentric),
+               footprint);
 }
 
 glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::vec2& barycentric,
@@ -543,7 +538,7 @@ glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::v
     const glm::vec2 uvFirst = texcoordEdge(1), uvSecond = texcoordEdge(2);
     const glm::vec3 texel =
         2.0F * texelsAt(valueLayers_, object.normalLayer,
-                        interpolated(geometry_.texcoords, corners, barycentric), footprint) -
+                        scene::interpolated(geometry_.texcoords, corners, barycentric), footprint) -
         1.0F;
     const glm::vec3 acrossSecond = glm::cross(second, normalWorld);
     const glm::vec3 acrossFirst = glm::cross(normalWorld, first);
@@ -569,7 +564,7 @@ glm::vec3 ReflectiveScene::texturedNormalAt(std::uint32_t triangle, const glm::v
 
 glm::vec3 ReflectiveScene::normalMeshAt(std::uint32_t triangle,
                                         const glm::vec2& barycentric) const {
-    return interpolated(geometry_.normals, geometry_.triangles[triangle], barycentric);
+    return scene::interpolated(geometry_.normals, geometry_.triangles[triangle], barycentric);
 }
 
 glm::vec3 shadeDiffuse(std::span<const scene::PointLight> lights, const glm::vec3& positionWorld,

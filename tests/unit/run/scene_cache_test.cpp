@@ -55,6 +55,8 @@ scene::Scene furnished(Params& params, std::uint64_t seed) {
     scene.points.positions.assign(static_cast<std::size_t>(count),
                                   glm::vec3(static_cast<float>(seed)));
     scene.points.radii = {0.5F, 1.5F};
+    scene.points.surface.positions = {glm::vec3(3)};
+    scene.points.whole.add(glm::vec3(4));
     scene.cameras.push_back({.name = "c", .farM = 9.0F});
     scene.paths.push_back({"p", scene.cameras});
     scene.lights.push_back({.radiusM = 3.0F});
@@ -112,6 +114,8 @@ TEST_F(KeptScenes, AreWhatWasMade) {
     EXPECT_EQ(kept.textures, made.textures);
     EXPECT_EQ(kept.points.positions, made.points.positions);
     EXPECT_EQ(kept.points.radii, made.points.radii);
+    EXPECT_EQ(kept.points.surface.positions, made.points.surface.positions);
+    EXPECT_EQ(kept.points.whole.max, made.points.whole.max);
     EXPECT_EQ(kept.cameras[0].farM, 9.0F);
     EXPECT_EQ(kept.paths[0].name, "p");
     EXPECT_EQ(kept.paths[0].keys[0].name, "c");

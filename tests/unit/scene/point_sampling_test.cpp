@@ -63,6 +63,31 @@ TEST(SampledPoints, OfAFlatMeshHaveItsTrianglesNormals) {
     }
 }
 
+TEST(SampledPoints, AreFramedByTheirSurface) {
+    const Scene scene = rectangles();
+    for (const std::size_t count : {1U, 50U, 4000U}) {
+        const PointCloud points = sampledPoints(scene, count);
+        EXPECT_EQ(points.framed().min, scene.bounds().min);
+        EXPECT_EQ(points.framed().max, scene.bounds().max);
+        EXPECT_NE(points.bounds().max, scene.bounds().max);
+        EXPECT_EQ(points.surface.triangles.size(), scene.triangleCount());
+    }
+}
+
+TEST(SurfaceOf, HasTheOutsideOutsideOfAMirrorImage) {
+    MeshBuilder builder;
+    builder.addBox({1, 0, 0}, {0.5F, 0.5F, 0.5F});
+    Scene scene = sceneOf(builder.take("box", -1));
+    scene.instances[0].worldFromMesh[0][0] = -2.0F;
+    const Mesh surface = surfaceOf(scene);
+    EXPECT_EQ(surface.bounds().min, glm::vec3(-3.0F, -0.5F, -0.5F));
+    for (const glm::uvec3& triangle : surface.triangles) {
+        const glm::vec3 &a = surface.positions[triangle.x], &b = surface.positions[triangle.y],
+                        &c = surface.positions[triangle.z];
+        EXPECT_GT(glm::dot(glm::cross(b - a, c - a), surface.normals[triangle.x]), 0.0F);
+    }
+}
+
 TEST(SampledPoints, RefuseWhatHasNoArea) {
     Mesh mesh;
     mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
@@ -88,6 +113,8 @@ TEST(ThinnedPoints, AreEvenlyTaken) {
         EXPECT_NEAR(static_cast<double>(half), 1000.0, 20.0);
     }
     EXPECT_EQ(thinnedPoints(all, 20001).positions, all.positions);
+    EXPECT_EQ(some.framed().max, all.bounds().max);
+    EXPECT_NE(some.bounds().max, all.bounds().max);
 }
 
 TEST(CompletePoints, EstimatesASpheresNormalsOutwards) {

@@ -278,7 +278,10 @@ TEST_F(SaveGlb, KeepsPoints) {
     Scene scene;
     const Mesh mesh = randomMesh(6);
     scene.points = {mesh.positions, mesh.normals, {}, mesh.colors};
-    saveGlb(folder.path() / "a.glb", scene);
+    scene.points.surface = mesh;
+    const Lines surface{"left out: the surface that points were taken of"};
+    EXPECT_EQ(saveGlb(folder.path() / "a.glb", scene), surface);
+    EXPECT_EQ(savePly(folder.path() / "a.ply", scene), surface);
     const PointCloud points = loadGltf(folder.path() / "a.glb").points;
     EXPECT_EQ(points.positions, scene.points.positions);
     EXPECT_EQ(points.normals, scene.points.normals);
