@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/trigonometric.hpp>
 #include <string>
+#include <utility>
 
 #include "engine/core/files.h"
 #include "techniques/kit/number.h"
@@ -152,9 +153,10 @@ PointSplattingParams::PointSplattingParams(Params& params)
                         {"taken of a scene without points of its own", "points", 1, 100'000'000})),
       keepsModel(params.getBool("cache", true,
                                 {"keeps the preprocessed model for later runs, and takes it"})),
-      measuresErrors(
-          params.getBool("errors", false,
-                         {"compares with a supersampled image, full EWA and uncompressed points"})),
+      measuresErrors(params.getBool(
+          "errors", false,
+          {"compares with a supersampled image, full EWA, uncompressed points, and the "
+           "surface itself where points were taken of one"})),
       measuresCompression(params.getBool("compression_errors", false,
                                          {"what 8 bytes per point lose, over all points"})),
       measuresSpeed(params.getBool("points_per_second", false, {"draws five more frames"})),
@@ -259,7 +261,7 @@ void PointSplatting::setup(technique::SetupContext& context) {
     shaders_ = &context.shaders;
     shared_ = context.shared;
     sizePx_ = context.outputSizePx;
-    const scene::PointCloud points = takePoints(*context.scene);
+    scene::PointCloud points = takePoints(*context.scene);
     const auto begin = std::chrono::steady_clock::now();
     model_ = params_.keepsModel
                  ? ModelFile::openOrBuild(cacheFolder() / "points", points, params_.tree)
@@ -268,6 +270,7 @@ void PointSplatting::setup(technique::SetupContext& context) {
         std::chrono::steady_clock::now() - begin;
     preprocessMs_ = elapsed.count();
     framedBox_ = framedBox(points);
+    if (params_.measuresErrors) surface_ = std::move(points.surface);
     views_.cameras = context.scene->cameras;
     views_.paths = context.scene->paths;
     if (params_.method == Method::PlainPoints) {
@@ -398,6 +401,7 @@ config::Outputs outputs() {
             {"supersampled", "a truth with many samples per pixel"},
             {"filtered", "a truth with many samples per pixel, filtered as splats are"},
             {"uncompressed", "a truth from uncompressed points"},
+            {"surface", "a truth by rays of the surface that the points were taken of"},
             {"built", "where patches and levels were made"},
             {"mapped", "where they were mapped from a file"},
             {"position", "of positions"},

@@ -102,10 +102,12 @@ class PointSplatting final : public technique::Technique {
     /// The selection alone, without what follows from it: the median of many.
     double selectionMs() const;
     void recordSpeed(technique::Recorder& recorder);
-    /// All points, uncompressed, by full EWA at many samples a pixel, averaged to pixels.
     struct Truth {
+        /// All points, uncompressed, by full EWA at many samples a pixel, averaged to pixels.
         ModelPicture boxed;
         ModelPicture filtered;  // as the filter of Eq. (1) has it
+        /// By rays, averaged as the first.
+        std::optional<ModelPicture> surface;
 
         std::size_t sizeBytes() const;
     };
@@ -125,7 +127,8 @@ class PointSplatting final : public technique::Technique {
     std::optional<ModelFile> model_;
     double preprocessMs_ = 0.0;
     scene::Box framedBox_;
-    scene::Scene views_;  // the scene's cameras and paths
+    scene::Mesh surface_;  // that the points were taken of; empty: not known
+    scene::Scene views_;   // the scene's cameras and paths
     std::unique_ptr<PointRenderer> renderer_;
     const SplatRenderer* splats_ = nullptr;  // the same; not of Method::PlainPoints
 

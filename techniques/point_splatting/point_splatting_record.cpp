@@ -9,6 +9,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 #include <glm/trigonometric.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "engine/metrics/flip.h"
 #include "engine/metrics/image_error.h"
 #include "engine/metrics/statistics.h"
+#include "engine/raycast/ray_tracer.h"
 #include "techniques/kit/image_layers.h"
 #include "techniques/kit/percent.h"
 #include "techniques/point_splatting/point_splatting.h"
@@ -365,12 +367,60 @@ void PointSplatting::recordSpeed(technique::Recorder& recorder) {
 }
 
 std::size_t PointSplatting::Truth::sizeBytes() const {
-    std::size_t values = 0;
-    for (const ModelPicture* picture : {&boxed, &filtered}) {
-        values += picture->color.values().size() + picture->coverage.values().size();
-    }
-    return sizeof(float) * values;
+    const auto valuesOf = [](const ModelPicture& picture) {
+        return picture.color.values().size() + picture.coverage.values().size();
+    };
+    return sizeof(float) *
+           (valuesOf(boxed) + valuesOf(filtered) + (surface ? valuesOf(*surface) : 0));
 }
+
+namespace {
+
+/// shading.glsl on the host.
+glm::vec3 shaded(const glm::vec3& color, const glm::vec3& normalView, const glm::vec3& toEyeView) {
+    constexpr float kAmbient = 0.1F, kSpecular = 0.15F, kShininess = 24.0F;
+    const glm::vec3 light = glm::normalize(kLightDirectionView);
+    const float diffuse = std::max(glm::dot(normalView, light), 0.0F);
+    const glm::vec3 halfway = glm::normalize(light + toEyeView);
+    const float specular =
+        kSpecular * std::pow(std::max(glm::dot(normalView, halfway), 0.0F), kShininess);
+    return color * (kAmbient + (1.0F - kAmbient) * diffuse) + specular * diffuse;
+}
+
+/// What a ray through each pixel's centre meets first of the faces that are turned to the eye, as
+/// splats that turn away are not drawn: RGBA.
+image::ImageF tracedFrom(const kit::View& view, const scene::Mesh& surface) {
+    constexpr glm::vec3 kGrey(0.75F);  // of shading.glsl
+    const raycast::RayTracer tracer(scene::sceneOf(surface));
+    const glm::mat3 viewFromWorld(view.viewFromWorld);
+    image::ImageF picture(view.sizePx.x, view.sizePx.y, 4);
+    tbb::parallel_for(0, view.sizePx.y, [&](int y) {
+        for (int x = 0; x < view.sizePx.x; ++x) {
+            // Rows of images are from the top.
+            const glm::vec2 centre(static_cast<float>(x) + 0.5F,
+                                   static_cast<float>(view.sizePx.y - y) - 0.5F);
+            const glm::vec3 ray = kit::rayThrough(view, centre);
+            const auto hit =
+                tracer.closestHit(view.eyeWorld, ray, 0.0F, std::numeric_limits<float>::infinity(),
+                                  raycast::Faces::Drawn);
+            if (!hit) continue;
+            const glm::uvec3& triangle = surface.triangles[hit->flattenedTriangle];
+            const glm::vec3 normal =
+                scene::unitOrZero(scene::interpolated(surface.normals, triangle, hit->barycentric));
+            const glm::vec3 color =
+                surface.colors.empty()
+                    ? kGrey
+                    : scene::interpolated(surface.colors, triangle, hit->barycentric);
+            const glm::vec3 seen = glm::clamp(
+                shaded(color, viewFromWorld * normal, -(viewFromWorld * ray)), 0.0F, 1.0F);
+            for (int c = 0; c < 3; ++c) picture.at(x, y, c) = seen[c];
+            picture.at(x, y, 3) = 1.0F;
+        }
+    });
+    return picture;
+}
+
+}  // namespace
 
 std::shared_ptr<const PointSplatting::Truth> PointSplatting::truthOfFrame() const {
     return technique::sharedResult<Truth>(
@@ -386,8 +436,14 @@ std::shared_ptr<const PointSplatting::Truth> PointSplatting::truthOfFrame() cons
             const double lowPass =
                 kSupersampling * static_cast<double>(params_.splats.lowPassRadiusPx);
             const double sigma = lowPass * std::sqrt(1.0 - 1.0 / (kSupersampling * kSupersampling));
-            return Truth{ModelPicture(image::averaged(samples, kSupersampling)),
-                         ModelPicture(image::gaussianAveraged(samples, kSupersampling, sigma))};
+            Truth truth{ModelPicture(image::averaged(samples, kSupersampling)),
+                        ModelPicture(image::gaussianAveraged(samples, kSupersampling, sigma)),
+                        std::nullopt};
+            if (!surface_.triangles.empty()) {
+                const kit::View view = kit::viewOf(camera_, kSupersampling * sizePx_);
+                truth.surface.emplace(image::averaged(tracedFrom(view, surface_), kSupersampling));
+            }
+            return truth;
         });
 }
 
@@ -404,6 +460,7 @@ void PointSplatting::recordErrors(technique::Recorder& recorder, const ModelPict
     const ModelPixels model(truth.boxed, picture);
     compare(truth.boxed, model, "supersampled");
     compare(truth.filtered, model, "filtered");
+    if (truth.surface) compare(*truth.surface, ModelPixels(*truth.surface, picture), "surface");
     if (params_.showsPictures) recordEnlarged(recorder, "filtered", truth.filtered);
 
     const auto compareDrawn = [&](const SplatSettings& splats, const SelectionSettings& selection,

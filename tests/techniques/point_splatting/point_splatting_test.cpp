@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
 #include <limits>
 
 #include "scenes/shared/mesh_builder.h"
@@ -253,6 +254,90 @@ TEST_F(PointSplattingTest, MorePointsArriveAndShowMore) {
         formerBytes = recorder.metrics.at("arrived_bytes");
         formerPsnr = recorder.metrics.at("display_psnr_db/supersampled");
     }
+}
+
+/// A ball of triangles no larger than a pixel of 96 × 96, red.
+scene::Scene ballOfTriangles() {
+    constexpr std::uint32_t kAround = 256, kUp = 128;
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (std::uint32_t row = 0; row <= kUp; ++row) {
+        for (std::uint32_t i = 0; i < kAround; ++i) {
+            const double up = glm::pi<double>() * row / kUp;
+            const double around = 2.0 * glm::pi<double>() * i / kAround;
+            positions.emplace_back(std::sin(up) * std::sin(around), std::cos(up),
+                                   std::sin(up) * std::cos(around));
+            if (row == kUp) continue;
+            const std::uint32_t here = row * kAround + i, next = row * kAround + (i + 1) % kAround;
+            triangles.emplace_back(here, here + kAround, next + kAround);
+            triangles.emplace_back(here, next + kAround, next);
+        }
+    }
+    scene::MeshBuilder builder;
+    builder.setColor({0.8F, 0.1F, 0.1F});
+    builder.addIndexed(positions, positions, triangles);
+    scene::Scene scene = scene::sceneOf(builder.take("ball", 0));
+    scene.materials.resize(1);
+    scene.materials[0].baseColor = glm::vec4(1.0F);
+    return scene;
+}
+
+/// Over the pixels that lie, with all beside them, where the third picture has something.
+double psnrDb(const image::ImageF& a, const image::ImageF& b, const image::ImageF& where) {
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 1; y + 1 < a.height(); ++y) {
+        for (int x = 1; x + 1 < a.width(); ++x) {
+            bool isInside = true;
+            for (int i = 0; i < 9; ++i) {
+                isInside = isInside && where.at(x + i % 3 - 1, y + i / 3 - 1, 0) > 0.0F;
+            }
+            if (!isInside) continue;
+            ++count;
+            for (int c = 0; c < 3; ++c) {
+                const double away = static_cast<double>(a.at(x, y, c) - b.at(x, y, c));
+                sum += away * away / 3.0;
+            }
+        }
+    }
+    EXPECT_GT(count, 1000);
+    return -10.0 * std::log10(sum / count);
+}
+
+/// Of the surface itself, whatever points were taken of it: a picture to which they come near.
+TEST_F(PointSplattingTest, TheSurfaceIsFramedAndTracedHoweverManyPointsAreTaken) {
+    const scene::Scene scene = ballOfTriangles();
+    const auto pictures = [&](int points) {
+        return recorded(
+            fmt::format("{{cache: false, errors: true, pictures: true, points: {}}}", points),
+            &scene);
+    };
+    const test::MetricRecorder few = pictures(500), many = pictures(300000);
+    const image::ImageF& surface = many.images.at("surface");
+    EXPECT_EQ(difference(few.images.at("surface"), surface), std::pair(0, 0.0F));
+    const double nearDb = psnrDb(surface, many.images.at("supersampled"), surface);
+    EXPECT_GT(nearDb, 45.0);
+    EXPECT_LT(psnrDb(surface, few.images.at("supersampled"), surface), nearDb);
+    EXPECT_GT(many.metrics.at("display_psnr_db/surface"), 20.0);
+    // The ball fills the window as its box does: a pixel's middle knows where the light comes from.
+    const glm::vec3 light = glm::normalize(kLightDirectionView);
+    const glm::vec3 halfway = glm::normalize(light + glm::vec3(0, 0, 1));
+    const float highlight = 0.15F * std::pow(halfway.z, 24.0F) * light.z;
+    EXPECT_NEAR(surface.at(48, 48, 0), 0.8F * (0.1F + 0.9F * light.z) + highlight, 0.01F);
+    EXPECT_NEAR(surface.at(48, 48, 1), 0.1F * (0.1F + 0.9F * light.z) + highlight, 0.01F);
+    // A cloud has none, and faces that are turned away are passed.
+    const scene::Scene cloud = bumpySphere(2000);
+    EXPECT_EQ(
+        recorded("{cache: false, errors: true}", &cloud).metrics.count("display_psnr_db/surface"),
+        0U);
+    scene::Scene open = scene;
+    std::erase_if(open.meshes[0].triangles, [&](const glm::uvec3& triangle) {
+        return open.meshes[0].positions[triangle.x].z > 0.5F;
+    });
+    const image::ImageF half =
+        recorded("{cache: false, errors: true, pictures: true, view: 0 0, points: 1000}", &open)
+            .images.at("surface");
+    EXPECT_EQ(half.at(48, 48, 0), 0.0F);
 }
 
 TEST_F(PointSplattingTest, SurfacesAreSampled) {
