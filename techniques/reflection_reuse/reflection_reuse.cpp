@@ -73,8 +73,6 @@ ReuseSettings readReuse(Params& params) {
     settings.reprojection.depthTolerance =
         kit::number(params, "depth_tolerance", 0.01F,
                     {"ε: share by which the depth of a reused sample may be off", "1", 0.0, 1.0});
-    settings.recomputesMoved = params.getBool(
-        "moved_objects", false, {"recomputes what an object that moved reflects in or hides"});
     return settings;
 }
 
@@ -108,8 +106,7 @@ ReuseParams::ReuseParams(Params& params)
     params.finish();
     reuse.isDirect = method == Method::Direct;
     if (method == Method::RayTraced) {
-        params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance",
-                            "moved_objects"},
+        params.refuseGiven({"threshold", "silhouette", "forward", "max_growth", "depth_tolerance"},
                            "'method: reuse' or 'method: direct'");
     }
     if (method != Method::Reuse) {

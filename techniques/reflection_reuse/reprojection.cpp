@@ -146,8 +146,7 @@ std::size_t ShiftedImage::sizeBytes() const {
 
 Reprojection::Reprojection(const gl::ShaderLibrary& shaders, const ReprojectionSettings& settings,
                            glm::ivec2 sizePx)
-    : settings_(settings), noDoubts_(gl::Texture::make2D(GL_R8UI, glm::ivec2(1))) {
-    noDoubts_.clearToZero();
+    : settings_(settings) {
     const auto passOf = [&](const char* vertices, const char* fragments) {
         return gl::Pass(shaders, {vertices, fragments}, reprojectionDefines());
     };
@@ -189,21 +188,18 @@ void Reprojection::drawGrid(const gl::Program& program, float pointBias) {
 }
 
 void Reprojection::shift(const ReflectionDepthImage& key, const Offsets& offsets,
-                         const gl::Texture* doubtful, ShiftedImage& result) {
+                         ShiftedImage& result) {
     cells_->list(offsets.offset, CellList::Validity::Offset, settings_.forward == Forward::Splats);
     result.framebuffer.clearColour(kRadianceTarget, glm::vec4(0.0F));
     result.framebuffer.clearDepth(1.0F);
     result.framebuffer.bind();
-    shift_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
     shift_.set("missDistance", key.diagonalM);
     // Eye depths end at the far plane; objects that move may carry hits beyond the scene's diagonal
     // at rest.
     shift_.set("longestPath", key.gbuffer.view.farM + 2.0F * key.diagonalM);
     shift_.set("maxGrowth", settings_.maxGrowth);
     shift_.use(carried(key, key.reflection.radiance)
-                   .with({{"distanceM", key.reflection.distance},
-                          {"offsets", offsets.offset},
-                          {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}}));
+                   .with({{"distanceM", key.reflection.distance}, {"offsets", offsets.offset}}));
     drawGrid(shift_, kPointBias);
 }
 
@@ -228,8 +224,7 @@ void Reprojection::warp(const ReflectionDepthImage& key, const gl::Texture& radi
     drawGrid(warp_, b / (1.0F + kPointBias) - b);
 }
 
-void Reprojection::gather(const ReflectionDepthImage& key, const gl::Texture* doubtful,
-                          const reflections::GBuffer& gbuffer,
+void Reprojection::gather(const ReflectionDepthImage& key, const reflections::GBuffer& gbuffer,
                           reflections::ReflectionTarget& target, gl::Texture& wanted) {
     wanted.clearToZero();
     target.distance.clearToZero();
@@ -237,11 +232,9 @@ void Reprojection::gather(const ReflectionDepthImage& key, const gl::Texture* do
     framebuffer.bind();
     gather_.set("keyClipFromWorld", key.gbuffer.view.clipFromWorld());
     gather_.set("depthTolerance", settings_.depthTolerance);
-    gather_.set("hasDoubts", doubtful != nullptr ? 1 : 0);
     gather_.use(gl::Resources{{"keyReflected", reflected_},
                               {"keyRadiance", key.reflection.radiance},
-                              {"keyDepth", key.gbuffer.depth},
-                              {"doubtful", doubtful != nullptr ? *doubtful : noDoubts_}}
+                              {"keyDepth", key.gbuffer.depth}}
                     .with(gbuffer.resourcesFor(gather_)));
     reflective_.begin();
     wholeImage_.draw();
@@ -263,8 +256,7 @@ std::uint32_t Reprojection::reflectiveSamples() const {
 }
 
 std::size_t Reprojection::sizeBytes() const {
-    return (cells_ ? cells_->sizeBytes() + depthBuffer_.sizeBytes() : reflected_.sizeBytes()) +
-           noDoubts_.sizeBytes();
+    return cells_ ? cells_->sizeBytes() + depthBuffer_.sizeBytes() : reflected_.sizeBytes();
 }
 
 }  // namespace gfxrepro::reflection_reuse

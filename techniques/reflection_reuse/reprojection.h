@@ -95,11 +95,9 @@ class Reprojection {
 
     /// The grid's vertices moved by the offsets and drawn with depth s.d + s.r. Cells with an
     /// invalid corner or across a silhouette are left out: what no other cell covers stays invalid,
-    /// as it was cleared to. Triangles that grow too much write invalid and hide what is farther,
-    /// and so do those with a corner of which `doubtful` (R8UI; may be null) says 1. A reflection
-    /// stays on its reflector.
-    void shift(const ReflectionDepthImage& key, const Offsets& offsets, const gl::Texture* doubtful,
-               ShiftedImage& result);
+    /// as it was cleared to. Triangles that grow too much write invalid and hide what is farther.
+    /// A reflection stays on its reflector.
+    void shift(const ReflectionDepthImage& key, const Offsets& offsets, ShiftedImage& result);
     /// `radiance` (RGBA16F; the shifted image, or, for the direct comparator, the key frame's own)
     /// forward to the view of `gbuffer`, into `target`; and, into `wanted` (R8UI), 1 where a
     /// reflective sample got nothing valid, else 0. Distances are not known: 0.
@@ -110,11 +108,10 @@ class Reprojection {
               gl::Texture& wanted);
     /// In place of Algorithm 9, shift() and warp() (Resampling::Gather): for each reflective sample
     /// of `gbuffer` the place of the key frame whose reflected point lies on the sample's own
-    /// mirror ray, and of several the one with the nearest point. Wanted is what has none or a
-    /// `doubtful` one, and what the key frame did not see itself.
-    void gather(const ReflectionDepthImage& key, const gl::Texture* doubtful,
-                const reflections::GBuffer& gbuffer, reflections::ReflectionTarget& target,
-                gl::Texture& wanted);
+    /// mirror ray, and of several the one with the nearest point. Wanted is what has none, and what
+    /// the key frame did not see itself.
+    void gather(const ReflectionDepthImage& key, const reflections::GBuffer& gbuffer,
+                reflections::ReflectionTarget& target, gl::Texture& wanted);
     /// 1 at every reflective sample, else 0: what a key frame traces.
     void wantAll(const reflections::GBuffer& gbuffer, gl::Texture& wanted);
 
@@ -132,7 +129,6 @@ class Reprojection {
     gl::Pass shift_, warp_, reflectedPoints_, gather_, wantAll_;
     gl::Texture depthBuffer_;  // of the warped image
     gl::Texture reflected_;    // to gather from: RGBA32F, R of Eq. 8 and the reflector
-    gl::Texture noDoubts_;     // one texel of 0
     gl::SampleQuery reflective_;
     kit::WholeImage wholeImage_;
 };

@@ -1,87 +1,10 @@
 #include "techniques/reflection_reuse/reuse_renderer.h"
 
-#include <array>
-#include <cstddef>
-#include <optional>
 #include <utility>
 
 #include "engine/core/error.h"
 
 namespace gfxrepro::reflection_reuse {
-
-namespace {
-
-/// Boxes grow by this share of the scene's diagonal on all sides: a ray ends on the surface, which
-/// often is the box's, give or take rounding.
-constexpr float kBoxMargin = 1e-3F;
-
-/// Moved of moved_objects.glsl.
-struct Moved {
-    glm::vec4 keyCentre;
-    glm::vec4 keyHalfSize;
-    std::uint32_t object;
-    std::uint32_t padding[3];
-};
-static_assert(offsetof(Moved, object) == 32);
-static_assert(sizeof(Moved) == 48);
-
-}  // namespace
-
-MovedObjects::MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx)
-    : then_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/doubt_moved.frag.glsl"},
-            reflections::objectDefines()),
-      now_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/want_moved.frag.glsl"},
-           reflections::objectDefines()),
-      doubtful_(gl::Texture::make2D(GL_R8UI, sizePx)),
-      framebuffer_(std::array<const gl::Texture*, 1>{&doubtful_}) {}
-
-void MovedObjects::setKeyFrame(const reflections::GpuObjects& objects) {
-    keyPoses_.assign(objects.poses().begin(), objects.poses().end());
-    keyBounds_.assign(objects.boundsWorld().begin(), objects.boundsWorld().end());
-}
-
-bool MovedObjects::find(const reflections::GpuObjects& objects) {
-    GFXREPRO_ASSERT_EQ(objects.poses().size(), keyPoses_.size());
-    std::vector<Moved> moved;
-    for (std::size_t i = 0; i < keyPoses_.size(); ++i) {
-        // Without triangles it neither is nor was anywhere.
-        if (objects.poses()[i] == keyPoses_[i] || keyBounds_[i].isEmpty()) continue;
-        moved.push_back({glm::vec4(keyBounds_[i].centre(), 1.0F),
-                         glm::vec4(0.5F * keyBounds_[i].size(), 0.0F),
-                         static_cast<std::uint32_t>(i),
-                         {}});
-    }
-    movedCount_ = static_cast<unsigned>(moved.size());
-    if (!moved.empty()) moved_ = gl::Buffer::of(moved);
-    return !moved.empty();
-}
-
-const gl::Texture& MovedObjects::doubtful(const ReflectionDepthImage& key) {
-    framebuffer_.bind();
-    then_.set("movedCount", movedCount_);
-    then_.set("margin", kBoxMargin * key.diagonalM);
-    then_.set("missDistance", key.diagonalM);
-    then_.use(gl::Resources{{"MovedObjects", moved_}, {"distanceM", key.reflection.distance}}.with(
-        key.gbuffer.resourcesFor(then_)));
-    wholeImage_.draw();
-    return doubtful_;
-}
-
-void MovedObjects::want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
-                        float diagonalM, gl::Texture& wanted) {
-    const gl::Framebuffer framebuffer(std::array<const gl::Texture*, 1>{&wanted});
-    framebuffer.bind();
-    now_.set("movedCount", movedCount_);
-    now_.set("margin", kBoxMargin * diagonalM);
-    now_.use(gl::Resources{{"MovedObjects", moved_}}
-                 .with(objects.resources())
-                 .with(gbuffer.resourcesFor(now_)));
-    wholeImage_.draw();
-}
-
-std::size_t MovedObjects::sizeBytes() const {
-    return doubtful_.sizeBytes() + moved_.sizeBytes();
-}
 
 namespace {
 
@@ -113,7 +36,6 @@ ReuseRenderer::ReuseRenderer(const gl::ShaderLibrary& shaders,
       gbufferRenderer_(shaders, objects.scene()),
       matcher_(shaders, settings.matching),
       reprojection_(shaders, reprojectionOf(settings), sizePx),
-      movedObjects_(shaders, sizePx),
       mend_(shaders, {"kit/whole_image.vert.glsl", "reflection_reuse/mend.frag.glsl"}),
       key_(emptyView(sizePx), diagonalM),
       gbuffer_(emptyView(sizePx)),
@@ -167,28 +89,23 @@ void ReuseRenderer::renderKeyFrame(gl::Profiler& profiler) {
     }
     const gl::GpuScope scope(profiler, "reflection_shift");
     reprojection_.setKeyFrame(key_);
-    movedObjects_.setKeyFrame(objects_);
     hasOffsets_ = false;
 }
 
 void ReuseRenderer::renderReused(gl::Profiler& profiler) {
-    const bool hasMoved = settings_.recomputesMoved && movedObjects_.find(objects_);
-    const gl::Texture* doubtful =
-        hasMoved && !settings_.isDirect ? &movedObjects_.doubtful(key_) : nullptr;
     if (shifted_) {
         match(profiler);
         const gl::GpuScope scope(profiler, "reflection_shift");
-        reprojection_.shift(key_, offsets_[0], doubtful, *shifted_);
+        reprojection_.shift(key_, offsets_[0], *shifted_);
     }
     {
         const gl::GpuScope scope(profiler, "reflection_warp");
         if (isGathered(settings_)) {
-            reprojection_.gather(key_, doubtful, gbuffer_, reflection_, wanted_);
+            reprojection_.gather(key_, gbuffer_, reflection_, wanted_);
         } else {
             reprojection_.warp(key_, shifted_ ? shifted_->radiance : key_.reflection.radiance,
                                gbuffer_, reflection_, wanted_);
         }
-        if (hasMoved) movedObjects_.want(objects_, gbuffer_, key_.diagonalM, wanted_);
     }
     const gl::GpuScope scope(profiler, "recompute");
     tracer_.trace(gbuffer_, &wanted_, traced_, profiler);
@@ -234,8 +151,7 @@ ReuseCounts ReuseRenderer::counts() const {
 std::size_t ReuseRenderer::sizeBytes() const {
     return key_.sizeBytes() + gbuffer_.sizeBytes() + reflection_.sizeBytes() + traced_.sizeBytes() +
            offsets_[0].sizeBytes() + offsets_[1].sizeBytes() +
-           (shifted_ ? shifted_->sizeBytes() : 0) + wanted_.sizeBytes() +
-           reprojection_.sizeBytes() + movedObjects_.sizeBytes();
+           (shifted_ ? shifted_->sizeBytes() : 0) + wanted_.sizeBytes() + reprojection_.sizeBytes();
 }
 
 }  // namespace gfxrepro::reflection_reuse

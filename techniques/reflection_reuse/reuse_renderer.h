@@ -16,37 +16,6 @@
 
 namespace gfxrepro::reflection_reuse {
 
-/// Objects are their boxes. Then: the key frame's segments W → R through the box in which a moved
-/// object was. Now: the mirror rays of the new view through the box in which it is, and samples of
-/// reflectors that moved. A ray's length now is not known before it is traced, so that what stands
-/// before the object does not save it from being traced.
-class MovedObjects {
-  public:
-    MovedObjects(const gl::ShaderLibrary& shaders, glm::ivec2 sizePx);
-
-    /// Where the objects are in the key frame.
-    void setKeyFrame(const reflections::GpuObjects& objects);
-    /// Finds those that are elsewhere now. False: none.
-    bool find(const reflections::GpuObjects& objects);
-
-    /// Then; R8UI in the key frame's view, 1: passes a box.
-    const gl::Texture& doubtful(const ReflectionDepthImage& key);
-    /// Now; writes 1 into `wanted`.
-    void want(const reflections::GpuObjects& objects, const reflections::GBuffer& gbuffer,
-              float diagonalM, gl::Texture& wanted);
-    std::size_t sizeBytes() const;
-
-  private:
-    gl::Pass then_, now_;
-    gl::Texture doubtful_;
-    gl::Framebuffer framebuffer_;
-    std::vector<glm::mat4> keyPoses_;
-    std::vector<scene::Box> keyBounds_;
-    gl::Buffer moved_;
-    unsigned movedCount_ = 0;
-    kit::WholeImage wholeImage_;
-};
-
 struct ReuseSettings {
     /// When more than this share of a frame's reflective samples was recomputed, the next frame is
     /// a key frame (Sec. 5.4.4). 0: every frame that needs any; 1: never again.
@@ -57,9 +26,6 @@ struct ReuseSettings {
     ReprojectionSettings reprojection{.resampling = Resampling::Gather};
     /// The comparator: depth alone, as if reflections were painted on the surface.
     bool isDirect = false;
-    /// Outlook of Sec. 5.5.4: samples whose reflected segment, then or now, passes the box of an
-    /// object that has moved since the key frame are recomputed.
-    bool recomputesMoved = false;
 };
 
 /// Of one frame.
@@ -116,7 +82,6 @@ class ReuseRenderer {
     reflections::GBufferRenderer gbufferRenderer_;
     PixelMatcher matcher_;
     Reprojection reprojection_;
-    MovedObjects movedObjects_;
     gl::Pass mend_;
     ReflectionDepthImage key_;
     reflections::GBuffer gbuffer_;              // of this frame; of a key frame, `key_` has it

@@ -8,10 +8,8 @@
 uniform sampler2D keyReflected;  // of reflected_points.frag.glsl
 uniform sampler2D keyRadiance;
 uniform sampler2D keyDepth;
-uniform usampler2D doubtful;  // not to be reused
 uniform mat4 keyClipFromWorld;
 uniform float depthTolerance;  // share of the depth
-uniform bool hasDoubts;
 
 // A search that is longer finds nothing.
 const int kMaxSteps = 24;
@@ -150,8 +148,7 @@ bool findNearer(vec2 ownPlace, Match found, out Candidate nearer) {
     return false;
 }
 
-// The radiance at a match, bilinear, and in a the weight. Doubtful or at an edge of what is
-// reflected: 0.
+// The radiance at a match, bilinear, and in a the weight; at an edge of what is reflected: 0.
 vec4 radianceAt(Match match) {
     vec2 place = vec2(match.at.pixel) + match.between;
     ivec2 low = ivec2(floor(place));
@@ -164,7 +161,6 @@ vec4 radianceAt(Match match) {
         float weight = near.x * near.y;
         Candidate beside;
         if (weight == 0.0 || !candidateAt(low + corner, beside)) continue;
-        if (hasDoubts && texelFetch(doubtful, beside.pixel, 0).r != 0u) return vec4(0.0);
         if (abs(beside.along - match.at.along) > kSameSurface * match.at.along) {
             other += weight;
             continue;

@@ -5,7 +5,6 @@ uniform float maxGrowth;
 
 in GridPoint {
     vec3 radiance;
-    float trust;
     noperspective vec2 placePx;
     flat uint reflector;
 } point;

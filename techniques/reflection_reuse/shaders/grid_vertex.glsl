@@ -7,7 +7,6 @@ uniform float pointBias;
 
 out GridPoint {
     vec3 radiance;
-    float trust;                 // 1: not doubtful
     noperspective vec2 placePx;  // in the key frame
     flat uint reflector;
 } point;
@@ -17,9 +16,8 @@ ivec2 vertexPixel() {
     return ivec2(gl_VertexID % width, gl_VertexID / width);
 }
 
-void passPoint(ivec2 pixel, float trust) {
+void passPoint(ivec2 pixel) {
     point.radiance = texelFetch(radiance, pixel, 0).rgb;
-    point.trust = trust;
     point.placePx = vec2(pixel) + 0.5;
     point.reflector = texelFetch(keySurface, pixel, 0).r & 0xFFFFu;
 }

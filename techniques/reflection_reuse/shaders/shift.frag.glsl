@@ -7,8 +7,7 @@ uniform usampler2D keySurface;
 layout(location = kRadianceTarget) out vec4 shifted;  // a: 1 valid, 0 invalid
 
 void main() {
-    // Weights of doubtless corners sum to 1 up to rounding.
-    bool isValid = !hasGrown() && point.trust > 0.999;
+    bool isValid = !hasGrown();
     // A triangle between samples of one reflector may span another one that stands before it.
     uint reflector = texelFetch(keySurface, ivec2(gl_FragCoord.xy), 0).r & 0xFFFFu;
     if (reflector != point.reflector) discard;

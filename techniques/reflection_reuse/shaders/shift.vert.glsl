@@ -5,8 +5,6 @@
 
 uniform sampler2D distanceM;
 uniform sampler2D offsets;
-uniform usampler2D doubtful;
-uniform bool hasDoubts;
 uniform float missDistance;  // of rays that left the scene
 uniform float longestPath;
 
@@ -20,7 +18,7 @@ float pathDepth(ivec2 pixel) {
 
 void main() {
     ivec2 pixel = vertexPixel();
-    passPoint(pixel, hasDoubts && texelFetch(doubtful, pixel, 0).r != 0u ? 0.0 : 1.0);
+    passPoint(pixel);
     vec2 placePx = vec2(pixel) + 0.5 + texelFetch(offsets, pixel, 0).xy;
     vec2 place = placePx / vec2(textureSize(keyDepth, 0));
     gl_Position = vec4(2.0 * place - 1.0, pathDepth(pixel), 1.0);

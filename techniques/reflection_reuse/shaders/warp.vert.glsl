@@ -6,7 +6,7 @@ uniform mat4 clipFromKeyPixels;  // from (x·d, y·d, d, 1)
 
 void main() {
     ivec2 pixel = vertexPixel();
-    passPoint(pixel, 1.0);
+    passPoint(pixel);
     float depth = texelFetch(keyDepth, pixel, 0).r;
     gl_Position = clipFromKeyPixels * vec4((vec2(pixel) + 0.5) * depth, depth, 1.0);
     gl_Position.z += pointBias;

@@ -13,8 +13,8 @@ namespace gfxrepro::reflection_reuse {
 
 using reflections::HostGBuffer;
 
-/// Of the objects of mirrorRoom().
-enum RoomObject { kMirrorWall = 4, kPosts = 6, kBlock = 7, kBall = 8 };
+/// Of the objects of mirrorRoom(); behind it is the ball alone.
+constexpr std::size_t kBlock = 7;
 
 inline scene::Mesh sphere(const glm::vec3& centre, float radius) {
     return reflections::dome(centre, radius, glm::pi<float>(), 48, 24);
@@ -70,13 +70,6 @@ class ReuseTest : public reflections::ReflectionsTest {
               tracer(scene, {}),
               renderer(shaders, objects, tracer, settings, kSize, scene.diagonalM()) {
             map.render(objects);
-            tracer.update(objects, profiler);
-        }
-        /// Puts an object `by` metres from where it is.
-        void move(std::size_t object, const glm::vec3& by) {
-            std::vector<glm::mat4> poses(objects.poses().begin(), objects.poses().end());
-            poses[object][3] += glm::vec4(by, 0.0F);
-            objects.setPoses(poses);
             tracer.update(objects, profiler);
         }
         Frame render(const scene::Camera& camera) {

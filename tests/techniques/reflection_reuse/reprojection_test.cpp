@@ -75,13 +75,12 @@ class ReprojectionTest : public reflections::ReflectionsTest {
     }
 
     std::vector<glm::vec4> shifted(const Samples& samples,
-                                   const ReprojectionSettings& settings = {},
-                                   const gl::Texture* doubtful = nullptr) {
+                                   const ReprojectionSettings& settings = {}) {
         upload(samples);
         Reprojection reprojection(shaders, settings, kSize);
         ShiftedImage result(kSize);
         reprojection.setKeyFrame(*key);
-        reprojection.shift(*key, *offsets, doubtful, result);
+        reprojection.shift(*key, *offsets, result);
         return result.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
     }
 
@@ -265,18 +264,6 @@ TEST_F(ReprojectionTest, SplatsLeaveHolesWhereAGridDoesNot) {
                  7, 5);
 }
 
-TEST_F(ReprojectionTest, DoubtfulSamplesAreInvalidWhereTheyGo) {
-    Samples samples;
-    std::vector<std::uint8_t> doubts(at(0, kSize.y), 0);
-    forEachPixel([&](int x, int y) {
-        samples.offset[at(x, y)] = {2, 0};
-        if (x == 9) doubts[at(x, y)] = 1;
-    });
-    const gl::Texture doubtful = reflections::maskTexture(doubts, kSize);
-    const std::vector<glm::vec4> result = shifted(samples, {}, &doubtful);
-    for (int x = 2; x < kSize.x; ++x) EXPECT_EQ(result[at(x, 9)].a, x == 11 ? 0.0F : 1.0F) << x;
-}
-
 TEST_F(ReprojectionTest, TheSameViewReusesEverySample) {
     // Specks, lines and areas of three reflectors at jumping depths: nearly all are on a rim.
     Samples samples;
@@ -364,7 +351,7 @@ TEST_F(ReprojectionTest, SplitDrawsCoverTheSame) {
                                       kLarge);
             ShiftedImage result(kLarge);
             reprojection.setKeyFrame(large);
-            reprojection.shift(large, none, nullptr, result);
+            reprojection.shift(large, none, result);
             const bool isGrid = forward == Forward::Grid;
             EXPECT_EQ(reprojection.cells().counts().cells, isGrid ? 299U * 259U : 0U);
             EXPECT_EQ(reprojection.cells().counts().points, isGrid ? 2U * (300U + 258U) : count);
@@ -384,7 +371,7 @@ TEST_F(ReprojectionTest, AListIsDrawnByOneCommandWhereTheDeviceNeedsNoMore) {
         Reprojection reprojection(shaders, {.splitsDraws = splitsDraws}, kSize);
         reprojection.setKeyFrame(*key);
         reflections::glCalls().clear();
-        reprojection.shift(*key, *offsets, nullptr, result);
+        reprojection.shift(*key, *offsets, result);
         const std::vector<reflections::GlCall> calls = reflections::glCalls();
         const auto count = [&](reflections::GlCall call) {
             return std::ranges::count(calls, call);
