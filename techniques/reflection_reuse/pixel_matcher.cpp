@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <span>
 
 #include "engine/core/error.h"
 #include "techniques/kit/draws.h"
@@ -17,9 +16,6 @@ namespace gfxrepro::reflection_reuse {
 namespace {
 
 constexpr int kMatchGroupSize = 8;
-constexpr int kRowLength = 16;  // samples that one invocation counts
-
-static_assert(sizeof(MatchingCounts) == 12, "as matching_counts.comp.glsl has it");
 
 gl::Defines matchingDefines(const MatchingSettings& settings) {
     return {{"GROUP_SIZE", kMatchGroupSize},
@@ -30,12 +26,6 @@ gl::Defines matchingDefines(const MatchingSettings& settings) {
             {"DAMPING", kDamping},
             {"ROUNDING", kRounding},
             {"START_REACH", kStartReach}};
-}
-
-gl::Defines countsDefines() {
-    return {{"GROUP_SIZE", kMatchGroupSize},
-            {"ROW_LENGTH", kRowLength},
-            {"INVALID_OFFSET", kInvalidOffset}};
 }
 
 }  // namespace
@@ -51,13 +41,14 @@ std::size_t Offsets::sizeBytes() const {
 }
 
 double MatchingCounts::meanSteps() const {
-    return reflectiveSamples > 0 ? static_cast<double>(steps) / reflectiveSamples : 0.0;
+    return reflectiveSamples > 0
+               ? static_cast<double>(steps) / static_cast<double>(reflectiveSamples)
+               : 0.0;
 }
 
 PixelMatcher::PixelMatcher(const gl::ShaderLibrary& shaders, const MatchingSettings& settings)
     : settings_(settings),
-      pass_(shaders, {"reflection_reuse/pixel_matching.comp.glsl"}, matchingDefines(settings)),
-      countsPass_(shaders, {"reflection_reuse/matching_counts.comp.glsl"}, countsDefines()) {}
+      pass_(shaders, {"reflection_reuse/pixel_matching.comp.glsl"}, matchingDefines(settings)) {}
 
 void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWorld,
                          const Offsets* previous, Offsets& result) const {
@@ -81,15 +72,18 @@ void PixelMatcher::match(const ReflectionDepthImage& key, const glm::vec3& eyeWo
             .with(key.gbuffer.resourcesFor(pass_)));
 }
 
-MatchingCounts PixelMatcher::counts(const ReflectionDepthImage& key, const Offsets& offsets) const {
-    const glm::ivec2 sizePx = key.gbuffer.view.sizePx;
-    const gl::Buffer sums = gl::Buffer::of(std::span<const MatchingCounts>({MatchingCounts{}}));
-    const GLuint rowPieces = kit::groupsFor(sizePx.x, kRowLength);
-    countsPass_.dispatch(
-        {kit::groupsFor(rowPieces, kMatchGroupSize), kit::groupsFor(sizePx.y, kMatchGroupSize), 1},
-        gl::Resources{{"offsets", offsets.offset}, {"stepCounts", offsets.steps}, {"Counts", sums}}
-            .with(key.gbuffer.resourcesFor(countsPass_)));
-    return sums.read<MatchingCounts>(1).front();
+MatchingCounts countMatches(const ReflectionDepthImage& key, const Offsets& offsets) {
+    const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(key.gbuffer);
+    const auto offset = offsets.offset.read<glm::vec2>(GL_RG, GL_FLOAT, 1);
+    const std::vector<std::uint8_t> steps = reflections::readMask(offsets.steps);
+    MatchingCounts counts;
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        if (!reflections::isReflective(surfaces[i])) continue;
+        ++counts.reflectiveSamples;
+        counts.invalidSamples += isValid(offset[i]) ? 0 : 1;
+        counts.steps += steps[i];
+    }
+    return counts;
 }
 
 HostReflectionDepthImage readReflectionDepthImage(const ReflectionDepthImage& image) {

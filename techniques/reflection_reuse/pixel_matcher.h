@@ -56,12 +56,12 @@ constexpr float kInvalidOffset = 65504.0F;  // the largest half
 
 /// Over the reflective samples of a key frame.
 struct MatchingCounts {
-    std::uint32_t reflectiveSamples = 0;
-    std::uint32_t invalidSamples = 0;
-    std::uint32_t steps = 0;
+    std::size_t reflectiveSamples = 0, invalidSamples = 0, steps = 0;
 
     double meanSteps() const;
 };
+/// Reads back; waits for the device.
+MatchingCounts countMatches(const ReflectionDepthImage& key, const Offsets& offsets);
 
 /// When is a match valid? A search moves between neighbours of one reflector that no silhouette
 /// separates (MatchingSettings::silhouette), within the image. It ends at a sample that misses the
@@ -81,12 +81,10 @@ class PixelMatcher {
     /// reflector walk to its border again in each frame.
     void match(const ReflectionDepthImage& key, const glm::vec3& eyeWorld, const Offsets* previous,
                Offsets& result) const;
-    /// Waits for the device.
-    MatchingCounts counts(const ReflectionDepthImage& key, const Offsets& offsets) const;
 
   private:
     MatchingSettings settings_;
-    gl::Pass pass_, countsPass_;
+    gl::Pass pass_;
 };
 
 /// The reflection depth image on the host, for exhaustive searches.

@@ -429,31 +429,27 @@ class ReflectionReuse final : public technique::Technique {
             return;
         }
         if (counts.reflectiveSamples > 0) recorder.metric("recomputed_pct", recomputedPct);
-        if (renderer_->shifted()) recordMatches(recorder, counts);
+        if (renderer_->shifted()) recordMatches(recorder);
     }
 
-    void recordMatches(technique::Recorder& recorder, const ReuseCounts& counts) {
+    void recordMatches(technique::Recorder& recorder) {
         const ReflectionDepthImage& key = renderer_->keyFrame();
+        const MatchingCounts counts = countMatches(key, renderer_->offsets());
+        if (counts.reflectiveSamples == 0) return;
+        recorder.metric("matching_steps", counts.meanSteps());
+        recorder.metric("unmatched_pct",
+                        kit::percent(counts.invalidSamples, counts.reflectiveSamples));
         const std::vector<std::uint32_t> surfaces = reflections::readSurfaces(key.gbuffer);
-        const std::vector<glm::vec2> offsets = readOffsets(renderer_->offsets());
-        std::size_t reflective = 0, unmatched = 0;
-        for (std::size_t i = 0; i < offsets.size(); ++i) {
-            if (!isReflective(surfaces[i])) continue;
-            ++reflective;
-            unmatched += isValid(offsets[i]) ? 0 : 1;
-        }
-        if (reflective == 0) return;
-        recorder.metric("matching_steps", counts.matchingSteps);
-        recorder.metric("unmatched_pct", kit::percent(unmatched, reflective));
         const std::vector<glm::vec4> shifted = readRadiance(renderer_->shifted()->radiance);
         std::size_t unshifted = 0;
         for (std::size_t i = 0; i < shifted.size(); ++i) {
             unshifted += isReflective(surfaces[i]) && shifted[i].a <= 0.5F ? 1 : 0;
         }
-        recorder.metric("unshifted_pct", kit::percent(unshifted, reflective));
+        recorder.metric("unshifted_pct", kit::percent(unshifted, counts.reflectiveSamples));
         if (params_.exhaustiveSamples == 0) return;
-        const MatchCheck check = checkMatches(readReflectionDepthImage(key), offsets,
-                                              view_.eyeWorld, params_.exhaustiveSamples);
+        const MatchCheck check =
+            checkMatches(readReflectionDepthImage(key), readOffsets(renderer_->offsets()),
+                         view_.eyeWorld, params_.exhaustiveSamples);
         recorder.metric("wrong_minimum_pct", kit::percent(check.wrong, check.checked));
     }
 

@@ -142,9 +142,6 @@ ReuseCounts ReuseRenderer::counts() const {
     if (!hasFrame_) return counts;
     counts.reflectiveSamples = reprojection_.reflectiveSamples();
     counts.recomputedSamples = recomputedSamples();
-    if (!isKeyFrame_ && shifted_) {
-        counts.matchingSteps = matcher_.counts(key_, offsets_[0]).meanSteps();
-    }
     return counts;
 }
 

@@ -33,8 +33,6 @@ struct ReuseCounts {
     bool isKeyFrame = false;
     std::uint32_t reflectiveSamples = 0;
     std::uint32_t recomputedSamples = 0;  // of a key frame: all
-    double matchingSteps = 0.0;  // mean ring steps a reflective sample of the key frame; 0 without
-                                 // matching
 };
 
 /// Passes, named as Table 23: `diffuse`, `pixel_matching`, `reflection_shift`, `reflection_warp`,

@@ -47,6 +47,7 @@ struct Frame {
     std::vector<glm::vec3> radiance;
     std::vector<std::uint8_t> recomputed;
     ReuseCounts counts;
+    double matchingSteps = 0.0;
 };
 
 class ReuseTest : public reflections::ReflectionsTest {
@@ -79,6 +80,10 @@ class ReuseTest : public reflections::ReflectionsTest {
             frame.radiance = renderer.reflection().radiance.read<glm::vec3>(GL_RGB, GL_FLOAT, 1);
             frame.recomputed = reflections::readMask(renderer.recomputed());
             frame.counts = renderer.counts();
+            if (!frame.counts.isKeyFrame && renderer.shifted()) {
+                frame.matchingSteps =
+                    countMatches(renderer.keyFrame(), renderer.offsets()).meanSteps();
+            }
             return frame;
         }
         std::vector<reflections::TracedSample> truth(const Frame& frame) const {

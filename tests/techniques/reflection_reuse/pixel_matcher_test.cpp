@@ -35,7 +35,8 @@ std::optional<glm::vec2> firstOffset(const HostReflectionDepthImage& key, glm::i
 }
 
 double invalidShare(const MatchingCounts& counts) {
-    return static_cast<double>(counts.invalidSamples) / std::max(counts.reflectiveSamples, 1U);
+    return static_cast<double>(counts.invalidSamples) /
+           std::max(static_cast<double>(counts.reflectiveSamples), 1.0);
 }
 constexpr glm::ivec2 kImageSizePx(128, 96);
 
@@ -266,8 +267,8 @@ TEST_F(PixelMatcherTest, SearchesBeginWhereTheLastOneEnded) {
         const glm::vec3 eye = key.eyeWorld() + static_cast<float>(frame) * glm::vec3(0.01F, 0, 0);
         matcher.match(key.image, eye, &previous, current);
         matcher.match(key.image, eye, nullptr, fresh);
-        steps += matcher.counts(key.image, current).meanSteps() / kFrames;
-        freshSteps += matcher.counts(key.image, fresh).meanSteps() / kFrames;
+        steps += countMatches(key.image, current).meanSteps() / kFrames;
+        freshSteps += countMatches(key.image, fresh).meanSteps() / kFrames;
         std::swap(previous, current);
     }
     RecordProperty("mean_steps", std::to_string(steps));
@@ -297,8 +298,8 @@ TEST_F(PixelMatcherTest, LostMatchesAreFoundAgainFromTheirNeighbours) {
         const glm::vec3 eye = key.eyeWorld() + static_cast<float>(away) * glm::vec3(0.04F, 0, 0);
         matcher.match(key.image, eye, &previous, current);
         matcher.match(key.image, eye, nullptr, fresh);
-        const MatchingCounts counts = matcher.counts(key.image, current);
-        const MatchingCounts freshCounts = matcher.counts(key.image, fresh);
+        const MatchingCounts counts = countMatches(key.image, current);
+        const MatchingCounts freshCounts = countMatches(key.image, fresh);
         EXPECT_LE(invalidShare(counts), invalidShare(freshCounts) + 0.005) << frame;
         lost = std::max(lost, invalidShare(counts));
         steps += counts.meanSteps();
@@ -307,7 +308,7 @@ TEST_F(PixelMatcherTest, LostMatchesAreFoundAgainFromTheirNeighbours) {
     }
     EXPECT_GT(lost, 0.05);
     EXPECT_LT(steps, 0.5 * freshSteps);
-    EXPECT_LE(invalidShare(matcher.counts(key.image, previous)), 0.005);
+    EXPECT_LE(invalidShare(countMatches(key.image, previous)), 0.005);
 }
 
 TEST_F(PixelMatcherTest, LongSearchesAreInvalid) {
@@ -330,9 +331,9 @@ TEST_F(PixelMatcherTest, CountsAreSumsOverReflectiveSamples) {
     const PixelMatcher matcher(shaders, {});
     Offsets offsets(key.sizePx());
     matcher.match(key.image, key.eyeWorld() + glm::vec3(0.2F, 0.1F, 0), nullptr, offsets);
-    const MatchingCounts counts = matcher.counts(key.image, offsets);
+    const MatchingCounts counts = countMatches(key.image, offsets);
     const HostOffsets host(offsets);
-    std::uint32_t invalid = 0, steps = 0;
+    std::size_t invalid = 0, steps = 0;
     const int reflective = forEachReflective(key.host.gbuffer, [&](glm::ivec2, std::size_t index) {
         invalid += host.isValid(index) ? 0 : 1;
         steps += host.steps[index];
@@ -356,7 +357,7 @@ TEST_F(PixelMatcherTest, WithoutReflectorsNothingIsValid) {
         EXPECT_EQ(host.offset[i], glm::vec2(kInvalidOffset));
         EXPECT_EQ(host.steps[i], 0);
     }
-    const MatchingCounts counts = matcher.counts(key.image, offsets);
+    const MatchingCounts counts = countMatches(key.image, offsets);
     EXPECT_EQ(counts.reflectiveSamples, 0U);
     EXPECT_EQ(counts.meanSteps(), 0.0);
     EXPECT_EQ(invalidShare(counts), 0.0);

@@ -202,16 +202,16 @@ TEST_F(ReuseTest, SearchesBeginWhereTheLastOnesEnded) {
                            .reprojection = {.resampling = Resampling::Twice}};
     World world(shaders, mirrorRoom(), settings);
     world.render(front());
-    const double first = world.render(front(0.1F)).counts.matchingSteps;
+    const double first = world.render(front(0.1F)).matchingSteps;
     EXPECT_GT(first, 0.5);
-    EXPECT_LT(world.render(front(0.1F)).counts.matchingSteps, 0.5 * first);
+    EXPECT_LT(world.render(front(0.1F)).matchingSteps, 0.5 * first);
     // Offsets of another key frame would send the search astray.
     settings.keyFrameThreshold = 0.0F;
     World often(shaders, mirrorRoom(), settings);
     often.render(front());
-    EXPECT_EQ(often.render(front(0.1F)).counts.matchingSteps, first);
+    EXPECT_EQ(often.render(front(0.1F)).matchingSteps, first);
     EXPECT_TRUE(often.render(front(0.1F)).counts.isKeyFrame);
-    EXPECT_LT(often.render(front(0.1F)).counts.matchingSteps, 0.1);
+    EXPECT_LT(often.render(front(0.1F)).matchingSteps, 0.1);
 }
 
 TEST_F(ReuseTest, TheDeviceHasAFrameToDrawWhileTheLastOnesCountIsWaitedFor) {
