@@ -26,50 +26,19 @@ glm::ivec2 binsOf(const BinSettings& settings, std::uint32_t area, std::uint32_t
 }
 
 long long mostBins(const BinSettings& settings, std::vector<int> parts) {
-    // The bins of one reflector by its scale a_R / n_v: corners of a staircase, where one of the
-    // axes has a bin more.
-    std::vector<double> steps[2];
-    const double exponent = settings.exponent;
-    for (const int axis : {0, 1}) {
-        const int most = axis == 0 ? settings.maxThetaBins : settings.maxPhiBins;
-        for (int bins = 2; bins <= most; ++bins) {
-            const double share = (bins - 0.5) / most;
-            steps[axis].push_back(
-                exponent > 0.0 ? std::pow(share, 1.0 / exponent) / double{settings.gain} : 0.0);
-        }
-    }
-    std::vector<glm::dvec2> corners{{0.0, 1.0}};
-    for (const std::vector<double>& ofAxis : steps) {
-        for (const double scale : ofAxis) {
-            double bins = 1.0;
-            for (const std::vector<double>& all : steps) {
-                bins *= static_cast<double>(
-                    1 + std::ranges::count_if(all, [&](double step) { return step <= scale; }));
-            }
-            corners.emplace_back(scale, bins);
-        }
-    }
-    // On the lines between any two of them.
-    const auto atMost = [&](double scale) {
-        double most = 0.0;
-        for (const glm::dvec2& a : corners) {
-            if (a.x > scale) continue;
-            most = std::max(most, a.y);
-            for (const glm::dvec2& b : corners) {
-                if (b.x <= scale) continue;
-                most = std::max(most, glm::mix(a.y, b.y, (scale - a.x) / (b.x - a.x)));
-            }
-        }
-        return most;
-    };
-    // Of n visible objects the scales of all m parts add up to 1 / n: on a concave curve the most
-    // is where all are the same. Most parts have the objects with most of them.
-    std::ranges::sort(parts, std::greater());
-    double most = 0.0;
-    int m = 0;
+    const double theta = settings.maxThetaBins, phi = settings.maxPhiBins;
+    // A share s of `most` bins rounds to no more than 1 + (most − ½) · s. The product of two such
+    // is concave over the scales a_R / n_v up to an exponent of a half, and a larger one has no
+    // more. Of n objects the scales of all m parts add up to 1 / n: most is where all are the same.
+    const double exponent = std::min(double{settings.exponent}, 0.5);
+    std::ranges::sort(parts, std::greater());  // most parts have the objects with most of them
+    double most = 0.0, m = 0.0;
     for (std::size_t n = 1; n <= parts.size(); ++n) {
         m += parts[n - 1];
-        if (m > 0) most = std::max(most, m * atMost(1.0 / (static_cast<double>(n) * m)));
+        const double scale = double{settings.gain} / (static_cast<double>(n) * std::max(m, 1.0));
+        const double share = std::min(std::pow(scale, exponent), 1.0);
+        const double bins = (1.0 + (theta - 0.5) * share) * (1.0 + (phi - 0.5) * share);
+        most = std::max(most, m * std::min(bins, theta * phi));
     }
     return static_cast<long long>(most);
 }
@@ -235,8 +204,10 @@ gl::Defines defines(int groupSize) {
             {"MAX_BLOCKS", kMaxBlocks},         {"MAX_CLUSTERS", kMaxClusters}};
 }
 
-gl::Pass compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize) {
-    return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, defines(groupSize)};
+gl::Pass compute(const gl::ShaderLibrary& shaders, const char* name, int groupSize,
+                 gl::Defines more = {}) {
+    more.merge(defines(groupSize));
+    return {shaders, {fmt::format("clustered_reflections/{}.comp.glsl", name)}, more};
 }
 
 gl::Pass wholeImage(const gl::ShaderLibrary& shaders, const char* name) {
@@ -276,10 +247,10 @@ struct ClusterBuilder::NormalBinPasses {
           areas(compute(shaders, "reflector_areas", kGroupSize)),
           bins(compute(shaders, "reflector_bins", kScanGroupSize)),
           assign(wholeImage(shaders, "assign_bins")),
-          count(compute(shaders, "count_bins", kGroupSize)),
+          count(compute(shaders, "sort_samples", kGroupSize, {{"COUNTS", 1}})),
           scan(compute(shaders, "scan_bins", kScanGroupSize)),
           number(compute(shaders, "number_clusters", kScanGroupSize)),
-          sort(compute(shaders, "sort_samples", kGroupSize)),
+          sort(compute(shaders, "sort_samples", kGroupSize, {{"COUNTS", 0}})),
           label(wholeImage(shaders, "label_clusters")),
           areaOfReflector(families.size() * sizeof(std::uint32_t)),
           binOfSample(gl::Texture::make2D(GL_R16UI, sizePx)),
