@@ -55,6 +55,8 @@ void ClusterCameras::setUniforms(const gl::Pass& pass, const kit::View& view) co
     pass.setIfActive("eyeForward", -eyeAxes[2]);
     pass.setIfActive("leastHeight", kLeastHeight * settings_.diagonalM);
     pass.setIfActive("leastRoom", kLeastRoom * settings_.diagonalM);
+    pass.setIfActive("ofConcave", settings_.ofConcave);
+    pass.setIfActive("ofConvex", settings_.ofConvex);
     pass.setIfActive("pixelPitch", glm::length(glm::vec3(worldFromPixels(view)[0])));
 }
 

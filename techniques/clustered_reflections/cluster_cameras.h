@@ -12,7 +12,7 @@ constexpr std::uint32_t kPlanarCluster = 1;
 constexpr std::uint32_t kNoRoom = 2;       // between near and far (glossy): no image, no march
 constexpr std::uint32_t kEyeBehind = 4;    // the eye is not before the fitting plane (see below)
 constexpr std::uint32_t kRaysTurned = 16;  // some rays are beyond CameraSettings::maxSlope
-constexpr std::uint32_t kShowsOwn = 1U << 16;  // the image has the own reflector (concavityPass)
+constexpr std::uint32_t kShowsOwn = 1U << 16;      // the image has the own reflector
 constexpr std::uint32_t kShowsOwnBack = 1U << 17;  // with what faces away from the camera
 
 /// A cluster's camera as shaders/cluster_camera.glsl has it (std430). It looks along the normal of
@@ -45,6 +45,9 @@ struct CameraSettings {
     /// the far plane, leaves the image at its side and takes the environment map from there on.
     /// Images for the steepest 7° would be as wide as for all others together.
     float maxSlope = 8.0F;
+    /// Flags of what images show of their own reflector ([xie2017] Sec. 4.7.4), by how a cluster
+    /// bends. Planar ones have nothing of themselves before their near plane.
+    std::uint32_t ofConcave = 0, ofConvex = 0;
 };
 
 /// The eye's least height over a fitting plane, in scene diagonals: below it (a cluster seen

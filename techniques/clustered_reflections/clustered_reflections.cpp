@@ -55,7 +55,6 @@ constexpr Choice<OwnReflector> kOwnReflectors[] = {
     {OwnReflector::ConcaveDiffuse, "concave_diffuse",
      "the second way, which it recommends: concave clusters show their own reflector's diffuse "
      "colour"},
-    {OwnReflector::LeftOut, "left_out", "a reflector is left out of its own images"},
 };
 
 void readLobe(Params& params, reflections::LobeSettings& lobe) {
@@ -156,9 +155,6 @@ ReflectionParams::ReflectionParams(Params& params)
                             "depth_images", "march", "depth_image_scale", "texels_per_sample",
                             "level_error_px", "own_reflector", "own_back", "errors_of"},
                            "'method: clustered'");
-    }
-    if (clustered.ownReflector == OwnReflector::LeftOut) {
-        params.refuseGiven({"own_back"}, "an 'own_reflector' that is not left_out");
     }
     if (!measuresErrors) params.refuseGiven({"converged_rays", "errors_of"}, "'errors: true'");
     if (clustered.clustering != Clustering::NormalBins) {

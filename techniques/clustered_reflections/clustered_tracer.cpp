@@ -10,27 +10,16 @@ namespace gfxrepro::clustered_reflections {
 
 namespace {
 
-/// Images may not be larger than their texture.
-ClusteredSettings limited(ClusteredSettings settings) {
-    settings.camera.maxSizePx = std::min(settings.camera.maxSizePx, kImagesSizePx.x);
+ClusteredSettings completed(ClusteredSettings settings) {
+    CameraSettings& camera = settings.camera;
+    camera.maxSizePx = std::min(camera.maxSizePx, kImagesSizePx.x);  // the images' texture
+    camera.ofConcave = settings.showsOwnBack ? kShowsOwn | kShowsOwnBack : kShowsOwn;
+    if (settings.ownReflector == OwnReflector::WholeScene) camera.ofConvex = camera.ofConcave;
     return settings;
 }
 
 TexelContent contentOf(ImageDrawing drawing) {
     return drawing == ImageDrawing::Visible ? TexelContent::Triangles : TexelContent::Colours;
-}
-
-/// Which clusters' images show their own reflector ([xie2017] Sec. 4.7.4). The second way: the
-/// concave ones. The first way: all that are not planar. Sets kShowsOwn in the flags of cameras.
-///
-/// Departure [xie2017] Sec. 4.7.4: the thesis looks whether samples lie before the near plane, but
-/// a mean plane always has some. Here the normals decide: the sum of (P_i − P_c) · n_i over a
-/// cluster's samples is negative where they point together.
-gl::Pass concavityPass(const gl::ShaderLibrary& shaders, const ClusteredSettings& settings) {
-    gl::Defines defines = imageDefines();
-    defines["MARKS_CONVEX"] = settings.ownReflector == OwnReflector::WholeScene ? 1 : 0;
-    defines["SHOWS_BACK"] = settings.showsOwnBack ? 1 : 0;
-    return {shaders, {"clustered_reflections/concavity.comp.glsl"}, defines};
 }
 
 }  // namespace
@@ -40,7 +29,7 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
                                  const reflections::GpuObjects& objects,
                                  const reflections::EnvironmentMap& map,
                                  const ClusteredSettings& settings, glm::ivec2 sizePx)
-    : settings_(limited(settings)),
+    : settings_(completed(settings)),
       objects_(&objects),
       map_(map),
       builder_(shaders, scene, settings.clustering, settings.bins, sizePx),
@@ -50,7 +39,6 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
       environmentSamples_(gl::Texture::make2D(GL_R8UI, sizePx)) {
     gl::Defines defines = shadedImageDefines(scene);
     defines["MARCH"] = settings.march == March::Hierarchical ? 1 : 0;
-    defines["SEES_OWN"] = settings.ownReflector != OwnReflector::LeftOut ? 1 : 0;
     defines["OF_TRIANGLES"] = settings.drawing == ImageDrawing::Visible ? 1 : 0;
     if (settings.drawing == ImageDrawing::Visible) {
         intersection_ = gl::Pass(
@@ -61,9 +49,6 @@ ClusteredTracer::ClusteredTracer(const gl::ShaderLibrary& shaders,
         intersection_ = gl::Pass(shaders, {"clustered_reflections/intersect.comp.glsl"}, defines);
         if (settings.drawing == ImageDrawing::OneByOne) oneByOne_.emplace(shaders, scene);
         places_ = gl::Buffer(kMaxClusters * sizeof(glm::ivec4));
-    }
-    if (settings.ownReflector != OwnReflector::LeftOut) {
-        concavity_ = concavityPass(shaders, settings);
     }
 }
 
@@ -76,13 +61,6 @@ void ClusteredTracer::trace(const reflections::GBuffer& gbuffer, const gl::Textu
     {
         const gl::GpuScope scope(profiler, "cluster_cameras");
         clusterCameras_.build(gbuffer, builder_.clusters());
-        if (concavity_) {
-            concavity_->dispatch({kMaxClusters, 1, 1},
-                                 gl::Resources{{"Cameras", clusterCameras_.cameras()},
-                                               {"Samples", builder_.clusters().samples},
-                                               {"Ranges", builder_.clusters().ranges}}
-                                     .with(gbuffer.resourcesFor(*concavity_)));
-        }
     }
     environmentSamples_.clearToZero();
     if (settings_.drawing == ImageDrawing::None) {

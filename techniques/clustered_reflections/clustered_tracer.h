@@ -25,13 +25,11 @@ enum class ImageDrawing {
     None,      // not at all: clusters and their cameras alone, nothing is reflected
 };
 
-/// What rays see of the reflector that they leave: [xie2017] Sec. 4.7.4. Planar ones have nothing
-/// of themselves before their near plane.
+/// What rays see of the reflector that they leave: [xie2017] Sec. 4.7.4.
 enum class OwnReflector {
     WholeScene,      // first way: rays meet an image of the whole scene, bent or not
     ConcaveDiffuse,  // second way: concave clusters are detected, and show the diffuse colour where
                      // their rays meet their own reflector; other images leave it out
-    LeftOut,         // every image leaves it out
 };
 
 struct ClusteredSettings {
@@ -99,7 +97,6 @@ class ClusteredTracer final : public reflections::ReflectionTracer {
     const reflections::EnvironmentMap& map_;
     ClusterBuilder builder_;
     ClusterCameras clusterCameras_;
-    std::optional<gl::Pass> concavity_;
     ClusterImages images_;
     gl::Pass intersection_;
     gl::Texture environmentSamples_;  // R8UI: 1 where a mirror ray took the environment map

@@ -34,7 +34,7 @@ KEY = ["frame", "repeat", "process", "pass", "metric"]
 # barrier for memory in divergent flow (the ray tracer on the device finds nothing): both are gone in 25.0.
 ZINK_22_FAILS = ["voxelization-mixed", "clustered_reflections", "reflection_reuse"]
 # What a frame has to read back, by what drew or was dispatched before, and why.
-READ_IN_FRAMES = {"clustered_reflections/concavity.comp.glsl": "sizes of clusters that are drawn one by one, as the thesis has it",
+READ_IN_FRAMES = {"clustered_reflections/cluster_cameras.comp.glsl": "sizes of clusters that are drawn one by one, as the thesis has it",
                   "reflections/gbuffer.frag.glsl": "what is clustered, or traced, on the CPU",
                   "reflection_reuse/list_cells.comp.glsl": "on software devices alone: the draws that are split there",
                   "kit/prefix_sum.comp.glsl": "the size of soft shadows' mesh, whose buffers are made then"}

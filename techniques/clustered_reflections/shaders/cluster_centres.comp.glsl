@@ -1,6 +1,10 @@
 #version 450 core
 // [xie2017] Sec. 4.4, steps 1, 2 and 3.a, a workgroup a cluster: the fitting plane (P_c, n_c), axes
-// on it, the far plane, and the mirrored eye e_0.
+// on it, the far plane, and the mirrored eye e_0; and what the image shows of its own reflector.
+//
+// Departure [xie2017] Sec. 4.7.4: the thesis looks whether samples lie before the near plane, but a
+// mean plane always has some. Here a cluster is concave where its normals point together: the sum of
+// (P_i − P_c) · n_i over its samples is negative.
 #include "clustered_reflections/cluster_camera.glsl"
 #include "clustered_reflections/cluster_chunks.glsl"
 #include "reflections/gbuffer.glsl"
@@ -14,6 +18,7 @@ uniform vec3 eyeRight;
 uniform vec3 eyeUp;
 uniform float leastHeight;  // of the eye over the fitting plane, metres
 uniform float leastRoom;    // between near and far plane, metres
+uniform uint ofConcave, ofConvex;  // flags of such clusters
 
 shared vec4 positionSums[GROUP_SIZE];
 shared vec4 normalSums[GROUP_SIZE];
@@ -64,6 +69,8 @@ void main() {
     uint flags = (ranges[cluster].w & 1u) != 0u ? kPlanarCluster : 0u;
     if (frame.centre.w < leastRoom) flags |= kNoRoom;
     if (height < leastHeight) flags |= kEyeBehind;
+    bool isConcave = positions.w < dot(positions.xyz / count, normals.xyz);
+    if ((flags & kPlanarCluster) == 0u) flags |= isConcave ? ofConcave : ofConvex;
     frame.eye = vec4(dot(frame.axisX.xyz, toEye), dot(frame.axisY.xyz, toEye),
                      -max(height, leastHeight), uintBitsToFloat(flags));
     frames[cluster] = frame;

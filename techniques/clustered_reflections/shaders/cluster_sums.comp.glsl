@@ -1,6 +1,6 @@
 #version 450 core
 // [xie2017] Sec. 4.4, step 1, over a chunk: sums of positions (from the cluster's first sample: less
-// is rounded away) and of normals; the least glossiness.
+// is rounded away), of normals and of what the two have in common; the least glossiness.
 #include "clustered_reflections/cluster_chunks.glsl"
 #include "reflections/gbuffer.glsl"
 
@@ -14,14 +14,16 @@ void main() {
     uint cluster = clusterOf(chunk);
     uvec2 range = samplesOf(chunk, cluster);
     vec3 origin = gbufferPosition(pixelOf(samples[ranges[cluster].x]));
-    vec3 positions = vec3(0.0), normals = vec3(0.0);
+    vec4 positions = vec4(0.0);
+    vec3 normals = vec3(0.0);
     float glossiness = 1.0;
     for (uint i = range.x; i < range.y; ++i) {
         ivec2 pixel = pixelOf(samples[i]);
-        positions += gbufferPosition(pixel) - origin;
-        normals += gbufferUnitNormal(pixel);
+        vec3 position = gbufferPosition(pixel) - origin, normal = gbufferUnitNormal(pixel);
+        positions += vec4(position, dot(position, normal));
+        normals += normal;
         glossiness = min(glossiness, glossinessOf(texelFetch(gbufferSurface, pixel, 0).r));
     }
-    partials[kPartials * chunk] = vec4(positions, 0.0);
+    partials[kPartials * chunk] = positions;
     partials[kPartials * chunk + 1u] = vec4(normals, glossiness);
 }

@@ -1,6 +1,6 @@
 // Step 3.c of [xie2017] Algorithm 6: the rays of one sample against its cluster's depth image, of the
-// texture of one cluster's image or of all, as ClusterImages fills it. SEES_OWN is 1 where the own
-// reflector may be drawn, OF_TRIANGLES where texels keep triangles instead of colours.
+// texture of one cluster's image or of all, as ClusterImages fills it. OF_TRIANGLES is 1 where texels
+// keep triangles instead of colours.
 #include "reflections/beam.glsl"
 #include "reflections/environment.glsl"
 #include "reflections/kept_colour.glsl"
@@ -26,12 +26,10 @@ float storedAt(ivec2 texel) {
 }
 
 bool isOwnAt(ivec2 texel) {
-#if SEES_OWN && OF_TRIANGLES
+#if OF_TRIANGLES
     return (texelFetch(imageTriangles, texel, 0).r >> 31) != 0u;
-#elif SEES_OWN
-    return texelFetch(imageColour, texel, 0).a > 0.5;
 #else
-    return false;
+    return texelFetch(imageColour, texel, 0).a > 0.5;
 #endif
 }
 

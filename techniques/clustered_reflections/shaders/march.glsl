@@ -5,9 +5,9 @@
 // the image, as 1 / (k1 + k2·u) is the ray's z, so that both are compared without a division, and
 // "behind" is "smaller". Texels are numbered in the whole texture; the image begins at originPx.
 //
-// SEES_OWN is 1 where the image may show the cluster's own reflector. Departure [xie2017] Sec. 4.7.4:
-// that counts once the ray has been in front of something by kLeaving: before, it has not left the
-// surface that it starts from.
+// Departure [xie2017] Sec. 4.7.4: the cluster's own reflector, where the image shows it, counts once
+// the ray has been in front of something by kLeaving: before, it has not left the surface that it
+// starts from.
 
 struct MarchImage {
     mat4 clipFromWorld;  // clip w: z; clip z from −w to w
@@ -124,7 +124,7 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
     hit.steps = 0;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
-    bool hasLeftOwn = SEES_OWN == 0;
+    bool hasLeftOwn = false;
     for (int step = 0; step <= ray.steps; ++step) {
         float u = float(step) * perStep;
         ivec2 texel = texelOf(image, ray, u);
@@ -169,7 +169,7 @@ bool march(MarchImage image, vec3 beginWorld, vec3 endWorld, out MarchHit hit) {
     hit.steps = 0;
     if (image.sizePx.x <= 0 || !project(image, beginWorld, endWorld, ray)) return false;
     float perStep = 1.0 / float(ray.steps);
-    bool hasLeftOwn = SEES_OWN == 0;
+    bool hasLeftOwn = false;
     int level = ray.steps < kFewSteps ? 0 : 1;
     for (int step = 0; step <= ray.steps;) {
         float u = float(step) * perStep;
