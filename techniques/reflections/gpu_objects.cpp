@@ -20,18 +20,14 @@ struct ObjectRecord {
     glm::mat4 normalFromMesh;
     glm::vec4 baseColor;
     glm::vec4 emissive;
-    glm::vec4 boundsCentre;
-    glm::vec4 boundsHalfSize;
-    std::uint32_t firstTriangle;
-    std::uint32_t triangleCount;
-    std::int32_t textureLayer;
-    std::uint32_t surface;
     glm::ivec4 layers;
     glm::vec4 reflection;
+    std::int32_t textureLayer;
+    std::uint32_t surface;
+    std::uint32_t padding[2];
 };
-static_assert(offsetof(ObjectRecord, baseColor) == 128 &&
-              offsetof(ObjectRecord, firstTriangle) == 192 &&
-              offsetof(ObjectRecord, layers) == 208 && sizeof(ObjectRecord) == 240);
+static_assert(offsetof(ObjectRecord, layers) == 160 &&
+              offsetof(ObjectRecord, textureLayer) == 192 && sizeof(ObjectRecord) == 208);
 
 /// Lights of shaders/shading.glsl, std140.
 struct LightRecord {
@@ -79,19 +75,12 @@ std::int32_t withSampling(int layer, const std::vector<scene::Sampling>& samplin
            (sampling.isNearest ? 1 << kNearestBit : 0);
 }
 
-ObjectRecord recordOf(const ReflectiveScene& scene, const Object& object, const glm::mat4& pose,
-                      const scene::Box& bounds) {
+ObjectRecord recordOf(const ReflectiveScene& scene, const Object& object, const glm::mat4& pose) {
     ObjectRecord record{};
     record.worldFromMesh = pose;
     record.normalFromMesh = normalMatrix(pose);
-    record.baseColor = glm::vec4(object.baseColor, object.isPlanar ? 1.0F : 0.0F);
+    record.baseColor = glm::vec4(object.baseColor, 0.0F);
     record.emissive = glm::vec4(object.emissive, object.normalScale);
-    if (!bounds.isEmpty()) {
-        record.boundsCentre = glm::vec4(bounds.centre(), 1.0F);
-        record.boundsHalfSize = glm::vec4(0.5F * bounds.size(), 0.0F);
-    }
-    record.firstTriangle = object.firstTriangle;
-    record.triangleCount = object.triangleCount;
     const auto colours = [&](int layer) { return withSampling(layer, scene.textureSamplings()); };
     const auto values = [&](int layer) { return withSampling(layer, scene.valueSamplings()); };
     record.textureLayer = colours(object.textureLayer);
@@ -209,7 +198,7 @@ void GpuObjects::setPoses(std::span<const glm::mat4> poses) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const Object& object = scene_->objects()[i];
         boundsWorld_.push_back(transformed(object.boundsMesh, poses[i]));
-        records.push_back(recordOf(*scene_, object, poses[i], boundsWorld_.back()));
+        records.push_back(recordOf(*scene_, object, poses[i]));
     }
     records_.write(std::span<const ObjectRecord>(records));
 }
