@@ -77,34 +77,6 @@ constexpr Face kFaces[6] = {{{1, 0, 0}, {0, -1, 0}}, {{-1, 0, 0}, {0, -1, 0}},
                             {{0, 1, 0}, {0, 0, 1}},  {{0, -1, 0}, {0, 0, -1}},
                             {{0, 0, 1}, {0, -1, 0}}, {{0, 0, -1}, {0, -1, 0}}};
 
-/// A face and a place on it, 0 to 1, by the table of the OpenGL specification (Sec. 8.13).
-struct PlaceOnCube {
-    int face = 0;
-    glm::vec2 place{0.0F};
-};
-PlaceOnCube placeOnCube(const glm::vec3& d) {
-    const glm::vec3 size = glm::abs(d);
-    int face = 0;
-    float s = 0.0F, t = 0.0F, major = 0.0F;
-    if (size.x >= size.y && size.x >= size.z) {
-        face = d.x >= 0.0F ? 0 : 1;
-        s = d.x >= 0.0F ? -d.z : d.z;
-        t = -d.y;
-        major = size.x;
-    } else if (size.y >= size.z) {
-        face = d.y >= 0.0F ? 2 : 3;
-        s = d.x;
-        t = d.y >= 0.0F ? d.z : -d.z;
-        major = size.y;
-    } else {
-        face = d.z >= 0.0F ? 4 : 5;
-        s = d.z >= 0.0F ? d.x : -d.x;
-        t = -d.y;
-        major = size.z;
-    }
-    return {face, 0.5F * (glm::vec2(s, t) / major + 1.0F)};
-}
-
 /// The farthest corner of the objects' boxes.
 float reachOf(std::span<const scene::Box> boxes, const glm::vec3& from) {
     float reach = 0.0F;
@@ -162,29 +134,6 @@ void EnvironmentMap::render(const GpuObjects& objects) {
 
 std::size_t EnvironmentMap::sizeBytes() const {
     return cube_.sizeBytes() + depth_.sizeBytes();
-}
-
-EnvironmentMap::Host EnvironmentMap::read() const {
-    const std::vector<float> values = cube_.read<float>(GL_RGB, GL_FLOAT, 3);
-    Host host;
-    host.sizePx = kFaceSizePx;
-    const float* next = values.data();
-    for (std::vector<glm::vec3>& face : host.faces) {
-        face.resize(std::size_t{kFaceSizePx} * kFaceSizePx);
-        for (glm::vec3& texel : face) {
-            texel = linearColour({next[0], next[1], next[2]});
-            next += 3;
-        }
-    }
-    return host;
-}
-
-glm::vec3 EnvironmentMap::Host::radianceFrom(const glm::vec3& direction) const {
-    const PlaceOnCube at = placeOnCube(direction);
-    const glm::ivec2 texel =
-        glm::clamp(glm::ivec2(at.place * static_cast<float>(sizePx)), 0, sizePx - 1);
-    return faces[at.face][static_cast<std::size_t>(texel.y) * static_cast<std::size_t>(sizePx) +
-                          static_cast<std::size_t>(texel.x)];
 }
 
 EnvironmentTracer::EnvironmentTracer(const gl::ShaderLibrary& shaders, EnvironmentMap& map,

@@ -81,18 +81,7 @@ class EnvironmentMap {
     /// For passes that include environment.glsl.
     gl::Resources resources() const { return {{"environmentMap", cube_}}; }
     const gl::Texture& cube() const { return cube_; }
-    const glm::vec3& centreWorld() const { return centreWorld_; }
     std::size_t sizeBytes() const;
-
-    /// A face's rows as GL stores them, 3 values a texel; waits for the device. For tracers on the
-    /// host, with `radianceFrom`.
-    struct Host {
-        int sizePx = 0;
-        std::vector<glm::vec3> faces[6];
-        /// Nearest texel: as the device samples it.
-        glm::vec3 radianceFrom(const glm::vec3& direction) const;
-    };
-    Host read() const;
 
   private:
     glm::vec3 centreWorld_;

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/image/srgb.h"
+#include "tests/techniques/reflections/environment_on_host.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflections {
@@ -55,7 +56,7 @@ class EnvironmentMapTest : public ReflectionsTest {
 
 TEST_F(EnvironmentMapTest, ShowsTheWallsInTheirDirections) {
     const EnvironmentMap map = drawn(room());
-    const EnvironmentMap::Host host = map.read();
+    const HostEnvironment host(map);
     std::vector<glm::vec4> directions;
     for (int side = 0; side < 6; ++side) {
         EXPECT_EQ(host.radianceFrom(towards(side)), kColors[side]) << side;
@@ -90,7 +91,7 @@ TEST_F(EnvironmentMapTest, KeepsDarkColours) {
     for (int side = 0; side < 6; ++side) {
         dark.materials[static_cast<std::size_t>(side)].emissive = glm::vec3(colourOf(side));
     }
-    const EnvironmentMap::Host host = drawn(dark).read();
+    const HostEnvironment host(drawn(dark));
     for (int side = 0; side < 6; ++side) {
         const float kept = host.radianceFrom(towards(side)).x;
         EXPECT_LE(255.0 * std::abs(image::srgbOf(kept) - image::srgbOf(colourOf(side))), 0.4)
@@ -101,7 +102,7 @@ TEST_F(EnvironmentMapTest, KeepsDarkColours) {
 TEST_F(EnvironmentMapTest, ShowsTheBackgroundWhereNothingIs) {
     scene::Scene open = room();
     open.instances.resize(4);  // without the walls at ±z, and the mirror
-    const EnvironmentMap::Host host = drawn(open, glm::vec3(0.0F)).read();
+    const HostEnvironment host(drawn(open, glm::vec3(0.0F)));
     EXPECT_EQ(host.radianceFrom({1, 0, 0}), kColors[1]);
     for (int c = 0; c < 3; ++c) {
         EXPECT_NEAR(host.radianceFrom({0, 0, 1})[c], kBackground[c],
@@ -130,7 +131,7 @@ TEST_F(EnvironmentTracerTest, TakesTheMeanOfTheMapOverTheLobe) {
         tracer.trace(mirror.gbuffer, nullptr, target, profiler);
 
         const HostGBuffer host = readGBuffer(mirror.gbuffer);
-        const EnvironmentMap::Host environment = mirror.map.read();
+        const HostEnvironment environment(mirror.map);
         const auto radiance = target.radiance.read<glm::vec4>(GL_RGBA, GL_FLOAT, 1);
         int different = 0;
         const int reflective = forEachReflective(host, [&](glm::ivec2 pixel, std::size_t i) {
@@ -159,7 +160,7 @@ TEST_F(EnvironmentTracerTest, FollowsMovedObjects) {
         return profiler.collect().size();
     };
     EXPECT_EQ(passesOfUpdate(), 1U);
-    EXPECT_EQ(mirror.map.read().radianceFrom({1, 0, 0}), kColors[1]);
+    EXPECT_EQ(HostEnvironment(mirror.map).radianceFrom({1, 0, 0}), kColors[1]);
     EXPECT_EQ(passesOfUpdate(), 0U);
     std::vector<glm::mat4> poses(mirror.objects.poses().begin(), mirror.objects.poses().end());
     for (const std::size_t side : {0U, 1U}) {
@@ -167,7 +168,7 @@ TEST_F(EnvironmentTracerTest, FollowsMovedObjects) {
     }
     mirror.objects.setPoses(poses);
     EXPECT_EQ(passesOfUpdate(), 1U);
-    EXPECT_EQ(mirror.map.read().radianceFrom({1, 0, 0}), kColors[0]);
+    EXPECT_EQ(HostEnvironment(mirror.map).radianceFrom({1, 0, 0}), kColors[0]);
 }
 
 }  // namespace

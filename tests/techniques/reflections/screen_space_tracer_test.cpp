@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tests/techniques/reflections/environment_on_host.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
 namespace gfxrepro::reflections {
@@ -61,7 +62,7 @@ bool isSeen(const HostGBuffer& gbuffer, const glm::vec3& point, const glm::vec3&
 TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
     const EmbreeTrace rays = trace(pillarsOnMirror(), beforePillars(), kScreenSizePx);
     const Traced traced = this->traced(rays.prepared, {});
-    const EnvironmentMap::Host environment = rays.prepared.map.read();
+    const HostEnvironment environment(rays.prepared.map);
 
     int seenCount = 0, agreeing = 0, missCount = 0, misses = 0;
     forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
@@ -127,7 +128,7 @@ TEST_F(ScreenSpaceTracerTest, TakesTheEnvironmentForWhatIsOutsideOfTheImage) {
     const EmbreeTrace rays =
         trace(pillarsOnMirror(), camera({0.0F, 0.8F, 1.6F}, {0.0F, 0.0F, 1.0F}), kScreenSizePx);
     const Traced traced = this->traced(rays.prepared, {});
-    const EnvironmentMap::Host environment = rays.prepared.map.read();
+    const HostEnvironment environment(rays.prepared.map);
     int count = 0, outside = 0;
     forEachReflective(rays.gbuffer, [&](glm::ivec2 pixel, std::size_t index) {
         const glm::vec3 direction = rays.gbuffer.mirrorDirection(pixel);
