@@ -27,6 +27,16 @@ void expectClaimsHold(const std::string& config, const std::string& dir) {
 
 using ShippedPrograms = test::RunTest;
 
+TEST_F(ShippedPrograms, UnitVectorsAreOffByThePrintedAngles) {
+    expectClaimsHold("unit_vectors-errors.yaml", folder.path() / "run");
+    EXPECT_THAT(readFile(folder.path() / "run/tables/cigolle2014-errors.csv"),
+                Not(HasSubstr("missing")));
+}
+
+TEST_F(ShippedPrograms, TwoBitsMoreHalveTheErrorOfUnitVectors) {
+    expectClaimsHold("unit_vectors-bits.yaml", folder.path() / "run");
+}
+
 TEST_F(ShippedPrograms, ErrorOfPovRayFallsAsTheRootOfItsSamples) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
     expectClaimsHold("povray-samples.yaml", folder.path() / "run");
@@ -41,7 +51,7 @@ TEST_F(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
     const fs::path configs = GFXREPRO_CONFIGS;
     const std::string readme = readFile(configs.parent_path() / "README.md");
-    const std::size_t section = readme.find("## Measure your own renderer");
+    const std::size_t section = readme.find("## Your program, your numbers");
     const std::size_t begin = readme.find("```yaml mine.yaml\n", section) + 18;
     ASSERT_LT(section, begin);
     const std::string config =

@@ -65,6 +65,9 @@ def main():
         environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}"}
         for line, language, name, lines, reason in blocks(text):
             if reason:
+                if part_of := re.fullmatch(r"a part of (\S+)", reason):
+                    whole = (README.parent / part_of.group(1)).read_text().split("\n")
+                    problems += [f"README.md:{line}: not in {part_of.group(1)}: {l}" for l in lines if l not in whole]
                 print(f"README.md:{line}: left out: {reason}")
             elif language == "yaml" and name:
                 (here / name).write_text("\n".join(lines) + "\n")
