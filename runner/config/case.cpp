@@ -124,7 +124,7 @@ bool Measure::mayContinue() const {
 }
 
 bool Measure::mayFollow(int rounds, double roundS) const {
-    constexpr double kMore = 1.25;
+    constexpr double kMore = 1.5;
     return roundS * (rounds + 1) <= timeBudgetS ||
            (rounds < processes && roundS * processes <= kMore * timeBudgetS);
 }
@@ -196,7 +196,7 @@ const KeyTable<MeasureKeys>& measureTable() {
          {&M::timeBudgetS,
           key(kTimeBudget, {.least = 0, .most = 1e9}, kUsual.timeBudgetS,
               "of all rounds of the file but those that 'processes' asks for: none is begun to end "
-              "later, but where a quarter more gives six",
+              "later, but where half more gives six",
               "seconds")},
          {&M::frames,
           key("frames", kFrameCounts, kUsual.frames, "frames of a path; each is repeated")},

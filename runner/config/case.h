@@ -52,7 +52,7 @@ struct Measure {
     /// Rounds that are measured whatever they take.
     int certainRounds() const;
     /// Whether a round may follow the first `rounds`, which took so long each: it ends within
-    /// `timeBudgetS`; or all `processes` take a quarter more at most, as five give no interval.
+    /// `timeBudgetS`; or all `processes` take half more at most, as five give no interval.
     bool mayFollow(int rounds, double roundS) const;
 };
 

@@ -166,8 +166,8 @@ TEST(Rounds, EndBeforeTheBudgetIsOverdrawn) {
     EXPECT_EQ(rounds.ending("t/1")["ended_by"], "time_budget_s");
 }
 
-/// Five rounds have no interval: a quarter more time is taken for the sixth, and no more.
-TEST(Rounds, TheSixthMayTakeAQuarterMore) {
+/// Five rounds have no interval: half more time is taken for the sixth, and no more.
+TEST(Rounds, TheSixthMayTakeHalfMore) {
     run::Plan plan = timedPlan();
     for (config::Case& item : plan.cases) {
         item.measure.isWithinBudget = true;
@@ -185,8 +185,8 @@ TEST(Rounds, TheSixthMayTakeAQuarterMore) {
         }
     };
     EXPECT_EQ(roundsOf(16), 6);
-    EXPECT_EQ(roundsOf(20), 6);
-    EXPECT_EQ(roundsOf(21), 4);
+    EXPECT_EQ(roundsOf(25), 6);
+    EXPECT_EQ(roundsOf(26), 3);
     EXPECT_EQ(roundsOf(60), 1);
 }
 
