@@ -137,7 +137,7 @@ class ExactWalk {
     std::uint32_t partCapacity_ = 0;
 };
 
-/// The full voxels of a grid get the mean normal of the surface in them, by area.
+/// The full voxels of a grid get the mean normal of the surface in them, nearly by area.
 class MeanNormals {
   public:
     /// `grid` has the voxels of the mesh. Throws UnsupportedError where their sums would not fit a

@@ -60,8 +60,8 @@ constexpr Choice<FillRule> kFillRules[] = {
 constexpr Choice<VoxelValue> kValues[] = {
     {VoxelValue::Occupancy, "occupancy", "full or empty"},
     {VoxelValue::Normal, "normal",
-     "octahedral normal: of exact rules the mean by area of the surface in the voxel, else the "
-     "largest code of what fills it"},
+     "octahedral normal: of exact rules the mean of the surface in the voxel, nearly by area, "
+     "else the largest code of what fills it"},
 };
 constexpr Choice<Split> kSplits[] = {
     {Split::Once, "once", "a static model: split at set-up"},

@@ -1,5 +1,5 @@
 #version 450 core
-// What the normals of a voxel add up to becomes its value: their mean by area. Reads the table of
+// What the normals of a voxel add up to becomes its value: their mean, nearly by area. Reads the table of
 // normal_sums.glsl, an invocation a slot; in the grid the bits of each full voxel are set.
 #include "voxelization/voxel_value.glsl"
 #include "voxelization/worksheet.glsl"

