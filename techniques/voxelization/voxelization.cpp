@@ -46,7 +46,7 @@ constexpr Choice<Rule> kRules[] = {
     {Rule::Rasterized, "rasterized", "pixels that the hardware samples, as the thesis"},
     {Rule::Thin, "thin", "6-separating: no path over faces leaks through"},
     {Rule::Conservative, "conservative",
-     "every voxel whose closed cube meets a triangle, and some that are within 2⁻⁸ voxel of one"},
+     "every voxel whose closed cube meets a triangle, and some that are within 1/256 voxel of one"},
 };
 constexpr Choice<Fill> kFills[] = {
     {Fill::Surface, "surface", "voxels of the surface"},
