@@ -108,8 +108,8 @@ TEST_F(GridShapeTest, RasterizedIsOneGridByAllMethods) {
                 MeshVoxelizerSettings s = settings(shape, Rule::Rasterized, bits);
                 s.grid.value = value;
                 const DenseGrid grid = gridOf(mesh, s);
-                // What the hardware rounds.
-                const std::size_t few = along.countFull() / 50;
+                // What the hardware rounds, of slivers, too, and where it clips.
+                const std::size_t few = along.countFull() / 20;
                 EXPECT_LE(reference::countMissing(along, grid), few) << shape.text();
                 EXPECT_LE(reference::countMissing(grid, along), few) << shape.text();
                 s.addressing = Addressing::Tables;
