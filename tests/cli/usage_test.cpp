@@ -99,10 +99,10 @@ TEST_F(Usage, VoxelsThatCannotBeWritten) {
     EXPECT_EQ(refused(dir + "/none.obj", dir + "/m.npy"),
               "gfxrepro: scene file 'DIR/none.obj' is not there; looked at DIR/none.obj\n");
     EXPECT_EQ(refused(folder.write("p.xyz", "0 0 0\n1 1 1\n"), dir + "/m.npy"),
-              "gfxrepro: scene 'p' (p.xyz) has no triangles, but 2 points; allowed to voxelize: "
+              "gfxrepro: scene 'DIR/p.xyz' has no triangles, but 2 points; allowed to voxelize: "
               "triangles that reach from one point to another\n");
     EXPECT_EQ(refused(model, model + "/m.npy", {"--resolution", "32"}),
-              "gfxrepro: cannot write DIR/a.obj/m.npy: Not a directory\n");
+              "gfxrepro: cannot create DIR/a.obj: Not a directory\n");
 }
 
 TEST_F(Usage, BadKeyHasItsPlace) {

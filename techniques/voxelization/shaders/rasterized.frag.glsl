@@ -15,6 +15,8 @@ uniform int slice;
 void main() {
     int size = localFromVolume(axis, SIZE).z;
     int w = min(int(gl_FragCoord.z * float(size)), size - 1);
+    // The depth of a clipped sliver may be no number, or lie before the grid.
+    if (w < 0) return;
 #ifdef SLICED
     if (w != slice) return;
 #endif

@@ -117,7 +117,12 @@ TEST_F(GridShapeTest, RasterizedIsOneGridByAllMethods) {
                 s.addressing = Addressing::Instructions;
                 for (const Method method : {Method::Direct, Method::Slices}) {
                     s.method = method;
-                    EXPECT_EQ(gridOf(mesh, s), grid) << shape.text() << bits;
+                    const DenseGrid other = gridOf(mesh, s);
+                    EXPECT_EQ(other, grid)
+                        << shape.text() << ", " << bits << " bits: "
+                        << (method == Method::Direct ? "direct" : "slices") << " lacks "
+                        << reference::countMissing(grid, other) << " voxels, and has more: "
+                        << reference::countMissing(other, grid);
                 }
             }
         }
