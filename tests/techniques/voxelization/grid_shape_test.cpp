@@ -119,10 +119,10 @@ TEST_F(GridShapeTest, RasterizedIsOneGridByAllMethods) {
                     s.method = method;
                     const DenseGrid other = gridOf(mesh, s);
                     EXPECT_EQ(other, grid)
-                        << shape.text() << ", " << bits << " bits: "
-                        << (method == Method::Direct ? "direct" : "slices") << " lacks "
-                        << reference::countMissing(grid, other) << " voxels, and has more: "
-                        << reference::countMissing(other, grid);
+                        << shape.text() << ", " << bits
+                        << " bits: " << (method == Method::Direct ? "direct" : "slices")
+                        << " lacks " << reference::countMissing(grid, other)
+                        << " voxels, and has more: " << reference::countMissing(other, grid);
                 }
             }
         }
