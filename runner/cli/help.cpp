@@ -102,11 +102,11 @@ class ScreenFormatter : public CLI::FormatterBase {
   public:
     std::string make_help(const CLI::App* app, std::string name,
                           CLI::AppFormatMode) const override {
-        std::string text = app->get_description() + "\nUsage: " + usageLine(*app, name) + "\n\n";
+        std::string text = app->get_description() + "\nUsage: " + usageLine(*app, name);
         if (!visibleCommands(*app).empty()) {
-            text += commandLines(*app);
-            return text + "'" + name + " COMMAND --help' says more.\n";
+            return text + "; with --help a command says more\n\n" + commandLines(*app);
         }
+        text += "\n\n";
         const std::vector<HelpEntry> entries = helpEntries(*app);
         std::size_t column = 0;
         for (const HelpEntry& entry : entries) {
