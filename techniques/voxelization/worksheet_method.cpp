@@ -220,7 +220,7 @@ class SolidFill {
             const glm::ivec3 size = localFromVolume(axis, sheets.grid.layout.shape().size);
             passes_[indexOf(axis)].dispatch(
                 {kit::groupsFor(size.x, kFillGroupSize), kit::groupsFor(size.y, kFillGroupSize), 1},
-                {{"sheet", sheets.of(axis)}, gl::Resource("Statistics", openLines_).unordered()});
+                {{"sheet", sheets.of(axis)}, {"Statistics", openLines_}});
         }
     }
     /// Of the last run; waits for the device.
