@@ -315,8 +315,10 @@ PngPhysics pngPhysics(std::span<const std::byte> bytes) {
     const std::size_t end = std::min(text.find('\0'), text.size() - 1);
     const auto x = parsedNumber<float>(text.substr(1, std::max<std::size_t>(end, 1) - 1));
     const auto y = parsedNumber<float>(text.substr(end + 1));
-    const bool isLength = text[0] == 1 && x && y && *x > 0.0F && std::isfinite(*x);
-    if (isLength && std::abs(*x - *y) <= 1e-3F * *x) said.pixelM = *x;
+    const auto isLength = [](const std::optional<float>& side) {
+        return side && *side > 0.0F && std::isfinite(*side);
+    };
+    if (text[0] == 1 && isLength(x) && isLength(y)) said.pixelM = {*x, *y};
     return said;
 }
 

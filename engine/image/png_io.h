@@ -1,6 +1,7 @@
 // PNG files (libpng).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -30,10 +31,10 @@ PngColours pngColours(std::span<const std::byte> bytes, const std::string& name)
 
 /// What a PNG file says of what it shows, by extensions of the standard.
 struct PngPhysics {
-    bool hasSize = false;         // that of a pixel (sCAL)
-    std::optional<float> pixelM;  // it, where it is in metres, and the same along x and y
-    bool hasValues = false;       // what its values mean (pCAL)
-    bool isTurned = false;        // by its Exif block
+    bool hasSize = false;                        // that of a pixel (sCAL)
+    std::optional<std::array<float, 2>> pixelM;  // it, along x and y, where it is in metres
+    bool hasValues = false;                      // what its values mean (pCAL)
+    bool isTurned = false;                       // by its Exif block
 };
 PngPhysics pngPhysics(std::span<const std::byte> bytes);
 

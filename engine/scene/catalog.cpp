@@ -325,12 +325,11 @@ Scene Catalog::load(const Node& reference) const {
     if (source.heightMap) {
         scene = loadTerrain(assetsFolder_, source);
         sha256 = sha256OfFile(assetsFolder_ / source.file);
-        if (isSceneFile(SceneReference::from(reference).name)) {
-            for (const std::string& warning :
-                 {steepnessWarning(*scene.heights), scene.heights->spacingWarning,
-                  scene.heights->unitWarning}) {
-                if (!warning.empty()) scene.warnings.push_back(warning);
-            }
+        const bool isOwn = isSceneFile(SceneReference::from(reference).name);
+        for (const std::string& warning :
+             {isOwn ? steepnessWarning(*scene.heights) : std::string(),
+              scene.heights->spacingWarning, scene.heights->unitWarning}) {
+            if (!warning.empty()) scene.warnings.push_back(warning);
         }
     } else if (!source.generator) {
         scene = loadScene(assetsFolder_ / source.file);

@@ -39,8 +39,8 @@ SchemaKey upKey() {
 struct UnitKeys {
     GivenKey spacingM, heightScaleM, noData;
 };
-SchemaKey spacingKey(const char* absent) {
-    return numberKey("spacing_m", kMetres, absent, "distance of samples");
+SchemaKey spacingKey() {
+    return numberKey("spacing_m", kMetres, "the file's, or 1", "distance of samples, both ways");
 }
 SchemaKey heightScaleKey() {
     return numberKey("height_scale_m", kMetres, Node::number(HeightMapUnits().heightScaleM).text(),
@@ -55,7 +55,7 @@ const KeyTable<OwnFileKeys>& ownFileTable() {
     using O = OwnFileKeys;
     static const KeyTable<O> table{{"own_file", "scene_params.", ""},
                                    {{&O::up, upKey()},
-                                    {&O::spacingM, spacingKey("the file's, or 1")},
+                                    {&O::spacingM, spacingKey()},
                                     {&O::heightScaleM, heightScaleKey()},
                                     {&O::noData, noDataKey()}}};
     return table;
@@ -146,7 +146,7 @@ const KeyTable<HeightMapKeys>& heightMapTable() {
          nullptr,
          {{"dependencies", {{kDetailM, Json::array({kResampleTo})}}}}},
         {{&H::heightMap, "height_map", "path", "required", "below the assets folder", assetPath()},
-         {&H::spacingM, spacingKey("required")},
+         {&H::spacingM, spacingKey()},
          {&H::heightScaleM, heightScaleKey()},
          {&H::noData, noDataKey()},
          {&H::resampleTo, numberKey(kResampleTo, kSamplesPerSide, "none",

@@ -13,6 +13,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/text.h"
+#include "engine/scene/height_map.h"
 
 namespace gfxrepro::scene {
 namespace {
@@ -188,75 +189,78 @@ glm::dvec2 verticalOf(const GeoTags& tags, const std::string& file) {
     return scale == 0.0 ? glm::dvec2(1.0, 0.0) : glm::dvec2(scale, offset);
 }
 
-/// How far samples stand apart along x and y, in units of the model; none where the file does not
-/// say it, or where nobody asks.
-std::optional<glm::dvec2> stepOf(const GeoTags& tags, bool isGeographic, bool isAsked,
-                                 const std::string& file) {
-    double x = 0.0, y = 0.0, skew = 0.0;
-    double right = 1.0, up = -1.0;  // where columns and rows go
-    bool isMirrored = false;
-    if (tags.pixelScale.size() >= 2) {
-        x = std::abs(tags.pixelScale[0]);
-        y = std::abs(tags.pixelScale[1]);
-        right = tags.pixelScale[0];
-        up = -tags.pixelScale[1];
-        isMirrored = right * up > 0.0;
-    } else if (tags.transform.size() >= 6) {
-        const std::vector<double>& m = tags.transform;
-        x = std::hypot(m[0], m[4]);
-        y = std::hypot(m[1], m[5]);
-        skew = std::abs(m[0] * m[1] + m[4] * m[5]);
-        right = m[0];
-        up = m[5];
-        isMirrored = m[0] * m[5] - m[1] * m[4] > 0.0;
+/// Where the next column and the next row stand, in units of the model: x is east, y north.
+struct Steps {
+    glm::dvec2 column, row;
+};
+
+/// None where the file does not say it, or where nobody asks.
+std::optional<Steps> stepsOf(const GeoTags& tags, bool isAsked, const std::string& file) {
+    Steps steps{{1.0, 0.0}, {0.0, -1.0}};
+    const std::vector<double>&scale = tags.pixelScale, &m = tags.transform;
+    const bool isSaid = scale.size() >= 2 || m.size() >= 6;
+    if (scale.size() >= 2) {
+        steps = {{scale[0], 0.0}, {0.0, -scale[1]}};
+    } else if (isSaid) {
+        steps = {{m[0], m[4]}, {m[1], m[5]}};
     }
-    if (isMirrored) {
+    const double right = steps.column.x, up = steps.row.y;
+    if (right * up - steps.row.x * steps.column.y > 0.0) {
         const char* found = up > 0.0      ? "its rows go north"
                             : right < 0.0 ? "its columns go west"
                                           : "it is mirrored";
         throw Error(
             fmt::format("{}: {}; allowed: from west to east and north to south", file, found));
     }
-    if (!isAsked || !(y > 0.0) || !std::isfinite(y)) return std::nullopt;
+    const double area = glm::length(steps.column) * glm::length(steps.row);
+    if (!isAsked || !isSaid || !(area > 0.0) || !std::isfinite(area)) return std::nullopt;
+    return steps;
+}
+
+/// Of the steps on the ground, or on its map. Throws Error where they are askew.
+glm::dvec2 lengthsOf(const Steps& steps, const std::string& file) {
+    const glm::dvec2 lengths(std::hypot(steps.column.x, steps.column.y),
+                             std::hypot(steps.row.x, steps.row.y));
     constexpr double kRounding = 1e-3;
-    if (!isGeographic && (std::abs(x - y) > kRounding * y || skew > kRounding * y * y)) {
-        throw Error(
-            fmt::format("{}: its samples stand {:g} apart along x and {:g} along y{}; "
-                        "allowed: the same, on squares",
-                        file, x, y, skew > kRounding * y * y ? ", askew" : ""));
+    if (std::abs(glm::dot(steps.column, steps.row)) > kRounding * lengths.x * lengths.y) {
+        throw Error(file + ": its rows and columns are askew; allowed: at right angles");
     }
-    return glm::dvec2(x, y);
+    return lengths;
 }
 
 /// How far north the middle of a map lies, in units of the model; none where the file does not say
 /// where it lies.
-std::optional<double> northOfMiddle(const GeoTags& tags, double step) {
+std::optional<double> northOfMiddle(const GeoTags& tags, const Steps& steps) {
     const glm::dvec2 middle = 0.5 * glm::dvec2(tags.sizeSamples);
     const std::vector<double>&m = tags.transform, &t = tags.tiepoint;
-    if (t.size() >= 6) return t[4] - (middle.y - t[1]) * step;
+    if (t.size() >= 6) return t[4] - (middle.y - t[1]) * glm::length(steps.row);
     if (m.size() >= 8) return m[4] * middle.x + m[5] * middle.y + m[7];
     return std::nullopt;
 }
 
 constexpr double kEarthRadiusM = 6378137.0;  // of WGS 84, at the equator
 
+/// Of coordinates that do not say where they lie.
+std::string takenAsAtTheEquator(const char* coordinates, glm::vec2 spacingM) {
+    return fmt::format(
+        "its coordinates, {}, do not say how far north it lies: its samples are drawn {} apart, as "
+        "at the equator",
+        coordinates, metresText(spacingM));
+}
+
 /// Spacing of Mercator's projection, which stretches both directions alike; the ellipsoid's
 /// differs by less than 1 %.
-void useMercator(const GeoTags& tags, glm::dvec2 step, double unitM, GeoUnits& units) {
-    const std::optional<double> north = northOfMiddle(tags, step.y);
-    const double stretch = std::cosh(north.value_or(0.0) * unitM / kEarthRadiusM);
-    const double mapM = step.y * unitM, groundM = mapM / stretch;
-    units.spacingM = static_cast<float>(groundM);
-    if (!north) {
-        units.warning = fmt::format(
-            "its coordinates, of Mercator's projection, do not say how far north it lies: its "
-            "samples are drawn {:.4g} m apart, as at the equator",
-            mapM);
+void useMercator(std::optional<double> northM, glm::dvec2 mapM, GeoUnits& units) {
+    const double stretch = std::cosh(northM.value_or(0.0) / kEarthRadiusM);
+    units.spacingM = glm::vec2(mapM / stretch);
+    const std::string drawn = metresText(*units.spacingM);
+    if (!northM) {
+        units.warning = takenAsAtTheEquator("of Mercator's projection", *units.spacingM);
     } else if (stretch > 1.01) {
         units.warning = fmt::format(
-            "its samples stand {:.4g} m apart on its map, of Mercator's projection, and {:.4g} m "
-            "on the ground in its middle; they are drawn {:.4g} m apart",
-            mapM, groundM, groundM);
+            "its samples stand {} apart on its map, of Mercator's projection, and {} on the ground "
+            "in its middle; they are drawn {} apart",
+            metresText(glm::vec2(mapM)), drawn, drawn);
     }
 }
 
@@ -271,26 +275,35 @@ std::string takenAsTrueToScale(const Keys& keys) {
     return "its projection is not true to scale: its samples are drawn as far apart as on its map";
 }
 
-/// Spacing and what to say of it, of a step in units of the model.
-void useStep(const GeoTags& tags, const Keys& keys, glm::dvec2 step, const std::string& file,
-             GeoUnits& units) {
+/// Spacing and what to say of it.
+void useSteps(const GeoTags& tags, const Keys& keys, const Steps& steps, const std::string& file,
+              GeoUnits& units) {
     const std::uint16_t code = keys.find(kProjected).value_or(0);
     const bool isGeographic = keys.find(kModelType) == kGeographic;
+    const bool isPlate =
+        !isGeographic && isOneOf(code, {{4087, 4088}, {32662, 32662}, {54001, 54001}});
     const double unitM = isGeographic ? keys.metresOfDegrees() : keys.metresOf(kLinearUnit);
-    const auto spacing = static_cast<float>(step.y * unitM);
-    if (!(spacing > 0.0F) || !std::isfinite(spacing)) return;
-    units.spacingM = spacing;
-    const bool isPlate = isOneOf(code, {{4087, 4088}, {32662, 32662}, {54001, 54001}});
-    if (!isGeographic && isOneOf(code, {{3395, 3395}, {3785, 3785}, {3857, 3857}})) {
-        useMercator(tags, step, unitM, units);
-    } else if (isGeographic || isPlate) {
-        const double north = northOfMiddle(tags, step.y).value_or(0.0);
-        const double latitude = isPlate ? north * unitM / kEarthRadiusM : glm::radians(north);
-        if (std::abs(latitude) > glm::radians(90.0)) {
-            throw Error(fmt::format("{}: its middle has the latitude {:g}; allowed: -90 to 90",
-                                    file, glm::degrees(latitude)));
+    const std::optional<double> north = northOfMiddle(tags, steps);
+    double latitude = 0.0;
+    if (isGeographic || isPlate) {
+        const double radians = isPlate ? unitM / kEarthRadiusM : glm::radians(1.0);
+        latitude = north.value_or(0.0) * radians;
+        if (std::abs(latitude) >= glm::radians(90.0)) {
+            throw Error(
+                fmt::format("{}: its middle has the latitude {:g}; allowed: between -90 and 90",
+                            file, glm::degrees(latitude)));
         }
-        units.warning = unevenSpacing(step.x * unitM * std::cos(latitude), step.y * unitM);
+    }
+    const Steps onGround{groundStep(steps.column, latitude), groundStep(steps.row, latitude)};
+    const glm::dvec2 stepM = lengthsOf(onGround, file) * unitM;
+    const glm::vec2 spacingM(stepM);
+    const auto [least, most] = std::minmax(spacingM.x, spacingM.y);
+    if (!(least > 0.0F) || !std::isfinite(most)) return;
+    units.spacingM = spacingM;
+    if (!isGeographic && isOneOf(code, {{3395, 3395}, {3785, 3785}, {3857, 3857}})) {
+        useMercator(north ? std::optional(*north * unitM) : std::nullopt, stepM, units);
+    } else if (isGeographic || isPlate) {
+        if (!north) units.warning = takenAsAtTheEquator("of latitude and longitude", spacingM);
     } else {
         units.warning = takenAsOfAMap(keys);
         if (units.warning.empty()) units.warning = takenAsTrueToScale(keys);
@@ -333,11 +346,10 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file, bool needsSpacing
     const double heightM = heightUnitM(tags, keys, file);
     units.scale = static_cast<float>(units.scale * heightM);
     units.offset = static_cast<float>(units.offset * heightM);
-    const bool isGeographic = keys.find(kModelType) == kGeographic;
     units.unitWarning = units.scale == 0.0F ? "its scale of 0 makes all its heights the same"
                                             : heightsTakenAsMetres(tags, keys);
-    if (const std::optional<glm::dvec2> step = stepOf(tags, isGeographic, needsSpacing, file)) {
-        useStep(tags, keys, *step, file, units);
+    if (const std::optional<Steps> steps = stepsOf(tags, needsSpacing, file)) {
+        useSteps(tags, keys, *steps, file, units);
     } else if (tags.tiepoint.size() > 6) {
         units.warning =
             "its points on the ground (ModelTiepoint) are not used: they say no spacing";
@@ -345,26 +357,18 @@ GeoUnits unitsOf(const GeoTags& tags, const std::string& file, bool needsSpacing
     return units;
 }
 
-std::string unevenSpacing(double eastM, double northM) {
-    if (std::abs(eastM - northM) < 0.01 * northM) return "";
-    return fmt::format(
-        "its samples stand {:.4g} m apart from west to east in its middle and {:.4g} m from north "
-        "to south; both are drawn {:.4g} m apart",
-        eastM, northM, northM);
+glm::dvec2 groundStep(glm::dvec2 step, double latitude) {
+    return {step.x * std::cos(latitude), step.y};
 }
 
-std::string warningOfTile(const std::string& name, double spacingM) {
+std::optional<double> middleOfTile(const std::string& name) {
     const auto isDigit = [&](std::size_t i) { return name[i] >= '0' && name[i] <= '9'; };
     const int side = name.empty() ? 0 : std::toupper(static_cast<unsigned char>(name[0]));
     const bool isLatitude = name.size() >= 3 && isDigit(1) && isDigit(2) &&
                             name.compare(1, 2, side == 'S' ? "90" : "89") <= 0;
-    if (!isLatitude || (side != 'N' && side != 'S')) {
-        return "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
-               "far apart from west to east as from north to south";
-    }
+    if (!isLatitude || (side != 'N' && side != 'S')) return std::nullopt;
     const double corner = 10.0 * (name[1] - '0') + (name[2] - '0');
-    const double middle = side == 'N' ? corner + 0.5 : corner - 0.5;
-    return unevenSpacing(spacingM * std::cos(glm::radians(middle)), spacingM);
+    return glm::radians(side == 'N' ? corner + 0.5 : corner - 0.5);
 }
 
 }  // namespace gfxrepro::scene

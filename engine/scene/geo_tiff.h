@@ -27,25 +27,25 @@ struct GeoTags {
 struct GeoUnits {
     float scale = 1.0F;
     float offset = 0.0F;
-    std::optional<float> spacingM;
-    std::string warning;      // of degrees that are no squares, and of what else spaces samples
-    std::string unitWarning;  // of heights that are taken as metres
+    std::optional<glm::vec2> spacingM;  // along x and z
+    std::string warning;                // of that
+    std::string unitWarning;            // of heights that are taken as metres
 };
 
 /// The whole text, but for blanks around it, as a number; none of an empty one. Throws Error, which
 /// begins with `what`, for others.
 std::optional<float> floatIn(const std::string& text, const std::string& what);
 
-/// Feet and kilometres become metres, degrees those along a meridian. Throws Error, which names the
-/// file, for other units, and where samples on the ground do not stand on squares; not for what
-/// says their spacing, if another is given.
+/// Feet and kilometres become metres, degrees those on the ground in the middle. Throws Error,
+/// which names the file, for other units, and where rows and columns of samples are askew on the
+/// ground; not for what says their spacing, if another is given.
 GeoUnits unitsOf(const GeoTags& tags, const std::string& file, bool needsSpacing);
 
-/// What to say of samples that are drawn as far apart from west to east as from north to south,
-/// though they are not; empty where the two differ by less than 1 %.
-std::string unevenSpacing(double eastM, double northM);
-/// The same of an SRTM tile, whose name is that of its corner in the south-west, as N46E007: or
-/// that another name says no latitude.
-std::string warningOfTile(const std::string& name, double spacingM);
+/// A way on the ground, east and north, of one that is as long as degrees along a meridian: those
+/// from west to east are shorter at a latitude (radians).
+glm::dvec2 groundStep(glm::dvec2 step, double latitude);
+/// The latitude (radians) of the middle of an SRTM tile, whose name is that of its corner in the
+/// south-west, as N46E007; none of other names.
+std::optional<double> middleOfTile(const std::string& name);
 
 }  // namespace gfxrepro::scene

@@ -59,22 +59,29 @@ Box HeightMap::bounds() const {
     if (isEmpty()) return box;
     const Extremes ends = extremes();
     box.add(glm::vec3(0.0F, ends.lowestM, 0.0F));
-    box.add(glm::vec3(static_cast<float>(sizeSamples.x - 1) * spacingM, ends.highestM,
-                      static_cast<float>(sizeSamples.y - 1) * spacingM));
+    box.add(glm::vec3(static_cast<float>(sizeSamples.x - 1) * spacingM.x, ends.highestM,
+                      static_cast<float>(sizeSamples.y - 1) * spacingM.y));
     return box;
+}
+
+std::string metresText(glm::vec2 spacingM) {
+    const std::string east = fmt::format("{:g}", spacingM.x);
+    const std::string south = fmt::format("{:g}", spacingM.y);
+    return (east == south ? east : east + " x " + south) + " m";
 }
 
 std::string steepnessWarning(const HeightMap& map) {
     constexpr float kMostSteepness = 0.5F;  // of the highest mountains seen from end to end: 0.3
     const HeightMap::Extremes ends = map.extremes();
-    const float longerM =
-        static_cast<float>(std::max(map.sizeSamples.x, map.sizeSamples.y) - 1) * map.spacingM;
+    const glm::vec2 sidesM = glm::vec2(map.sizeSamples - 1) * map.spacingM;
+    const float longerM = std::max(sidesM.x, sidesM.y);
     if (ends.highestM - ends.lowestM <= kMostSteepness * longerM) return "";
     return fmt::format(
-        "heights from {:g} to {:g} m over {:g} m of ground ({} x {} samples, {:g} m apart) look "
+        "heights from {:g} to {:g} m over {:g} m of ground ({} x {} samples, {} apart) look "
         "like spikes; `scene_params: {{spacing_m: …, height_scale_m: …}}` says how far its samples "
         "stand apart and how many metres a value is",
-        ends.lowestM, ends.highestM, longerM, map.sizeSamples.x, map.sizeSamples.y, map.spacingM);
+        ends.lowestM, ends.highestM, longerM, map.sizeSamples.x, map.sizeSamples.y,
+        metresText(map.spacingM));
 }
 
 void settleForMemory(const std::string& name, glm::ivec2 sizeSamples, const WriteError& why) {
@@ -152,7 +159,8 @@ class Metres {
 HeightMap withoutHeights(const HeightRows& source, const HeightMapUnits& units) {
     HeightMap map;
     map.sizeSamples = source.sizeSamples;
-    map.spacingM = units.spacingM.value_or(source.spacingM.value_or(1.0F));
+    map.spacingM =
+        units.spacingM ? glm::vec2(*units.spacingM) : source.spacingM.value_or(glm::vec2(1.0F));
     map.isSpacingOfFile = !units.spacingM && source.spacingM;
     if (!units.spacingM) map.spacingWarning = source.spacingWarning;
     map.unitWarning = source.unitWarning;
@@ -380,9 +388,7 @@ class Resampling {
     }
 
     glm::ivec2 sizeSamples() const { return sizeSamples_; }
-    float spacingM() const {
-        return static_cast<float>(static_cast<double>(map_.spacingM) * step_);
-    }
+    glm::vec2 spacingM() const { return glm::vec2(glm::dvec2(map_.spacingM) * step_); }
 
     void makeRow(int row, float* heights) const {
         RowResampler(map_, step_).evaluate(row, heights, sizeSamples_.x);

@@ -17,14 +17,14 @@ namespace gfxrepro::scene {
 struct Box;
 struct Mesh;
 
-/// Sample (column, row) stands at (column · spacingM, height, row · spacingM): x is east, z south,
-/// y up; the north-western sample is at x = z = 0. All heights are finite. They are in memory, or
-/// in a file of which only what is looked at is read.
+/// Sample (column, row) stands at (column · spacingM.x, height, row · spacingM.y): x is east, z
+/// south, y up; the north-western sample is at x = z = 0. All heights are finite. They are in
+/// memory, or in a file of which only what is looked at is read.
 struct HeightMap {
-    glm::ivec2 sizeSamples{0};  // x: columns from west to east, y: rows from north to south
-    float spacingM = 1.0F;
+    glm::ivec2 sizeSamples{0};     // x: columns from west to east, y: rows from north to south
+    glm::vec2 spacingM{1.0F};      // from west to east, from north to south
     bool isSpacingOfFile = false;  // the file's own, as nobody else said it
-    std::string spacingWarning;    // where that is uneven or a guess; for the log
+    std::string spacingWarning;    // where that is a guess; for the log
     std::string unitWarning;       // of heights that are taken as metres; likewise
     std::vector<float> heightsM;   // row by row, the northernmost first; empty with a file
     // Shared, against the house's rule: copies of a scene look at one file.
@@ -60,8 +60,8 @@ struct HeightMap {
     /// Of a map with samples.
     Extremes extremes() const;
     glm::vec3 position(int column, int row) const {
-        return {static_cast<float>(column) * spacingM, heightM(column, row),
-                static_cast<float>(row) * spacingM};
+        return {static_cast<float>(column) * spacingM.x, heightM(column, row),
+                static_cast<float>(row) * spacingM.y};
     }
     Box bounds() const;
 };
@@ -76,7 +76,7 @@ constexpr int kMostSamplesInMemory = 4097;
 /// How a file's values become metres: height = (value · scale + offset) · heightScaleM, with the
 /// scale and the offset that a GeoTIFF may state.
 struct HeightMapUnits {
-    std::optional<float> spacingM;  // none: what a GeoTIFF or an SRTM tile says, else 1
+    std::optional<float> spacingM;  // both ways; none: what the file says, else 1
     float heightScaleM = 1.0F;
     std::optional<float> noData;  // a further value, before scaling, that means "none"
 };
@@ -106,6 +106,9 @@ HeightMap resampled(const HeightMap& map, int sizeSamples, float detailM, std::u
 /// all of these, is there. In memory where the folder cannot be written (settleForMemory).
 HeightMap resampledInFile(const HeightMap& map, int sizeSamples, float detailM, std::uint64_t seed,
                           const std::filesystem::path& folder, const std::string& key);
+
+/// How far samples stand apart: `30 m`, or `30 x 10 m` from west to east and from north to south.
+std::string metresText(glm::vec2 spacingM);
 
 /// What to say of a map whose heights differ by more than half of its longer side, as they do where
 /// nobody said how far its samples stand apart; empty of others.

@@ -80,11 +80,9 @@ class PngHeightRows : public HeightRows {
     void findScale(const fs::path& path) {
         const image::PngPhysics said = image::pngPhysics(MappedFile(path).bytes());
         if (said.isTurned) throw Error(path.string() + ": turned by its Exif; allowed: as stored");
-        spacingM = said.pixelM;
+        if (said.pixelM) spacingM = glm::vec2((*said.pixelM)[0], (*said.pixelM)[1]);
         if (said.hasSize && !spacingM) {
-            spacingWarning =
-                "left out: the size of its pixels (chunk sCAL), which is none in metres that is "
-                "the same along x and y";
+            spacingWarning = "left out: the size of its pixels (chunk sCAL), none in metres";
         }
         if (said.hasValues) {
             unitWarning =
@@ -164,9 +162,14 @@ std::unique_ptr<HeightRows> openSrtmRows(const fs::path& path, bool /*needsSpaci
             continue;
         }
         auto rows = std::make_unique<BareRows>(path, glm::ivec2(side), ValueType::I16, true);
-        const double spacingM = kMetresPerDegree / (side - 1);  // of a tile's degree
-        rows->spacingM = static_cast<float>(spacingM);
-        rows->spacingWarning = warningOfTile(path.stem().string(), spacingM);
+        const double southM = kMetresPerDegree / (side - 1);  // of a tile's degree
+        const auto latitude = middleOfTile(path.stem().string());
+        rows->spacingM = glm::vec2(groundStep({southM, southM}, latitude.value_or(0.0)));
+        if (!latitude) {
+            rows->spacingWarning =
+                "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
+                "far apart from west to east as from north to south";
+        }
         return rows;
     }
     throw Error(

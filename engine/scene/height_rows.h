@@ -26,9 +26,9 @@ class HeightRows {
     std::vector<float> noData;  // further values that mean "no data"
     float scale = 1.0F;         // as the file says: height = value · scale + offset
     float offset = 0.0F;
-    std::optional<float> spacingM;  // as the file says
-    std::string spacingWarning;     // of one that is not the same along x and z, or not known
-    std::string unitWarning;        // of heights that are taken as metres
+    std::optional<glm::vec2> spacingM;  // as the file says: along x and z
+    std::string spacingWarning;         // of one that is a guess, or not known
+    std::string unitWarning;            // of heights that are taken as metres
     bool canBeNan = false;
     bool areDoubles = false, isRounded = false;  // the latter once one was read that no float is
     bool isEightBit = false;

@@ -252,20 +252,21 @@ Camera framingCamera(const Box& box, float aspect, glm::vec3 towardsEye) {
 void addTerrainCameras(Scene& scene) {
     const HeightMap& map = *scene.heights;
     const Box box = map.bounds();
-    const float sideM = std::max({box.size().x, box.size().z, map.spacingM});
+    const float greaterM = std::max(map.spacingM.x, map.spacingM.y);
+    const float sideM = std::max({box.size().x, box.size().z, greaterM});
     Camera overview = framingCamera(box, 1.6F);
     overview.name = "overview";
     Camera flight;
     flight.name = "flight";
     const glm::ivec2 place(map.sizeSamples.x / 2, map.sizeSamples.y * 3 / 4);
-    const glm::vec3 ground(static_cast<float>(place.x) * map.spacingM,
+    const glm::vec3 ground(static_cast<float>(place.x) * map.spacingM.x,
                            map.clampedHeightM(place.x, place.y),
-                           static_cast<float>(place.y) * map.spacingM);
+                           static_cast<float>(place.y) * map.spacingM.y);
     const float aboveM = std::max(0.02F * sideM, 0.25F * box.size().y);
     flight.position = ground + glm::vec3(0.0F, aboveM, 0.0F);
     flight.target = flight.position + glm::vec3(0.0F, -0.25F, -1.0F) * (0.25F * sideM);
     flight.verticalFovRad = 0.7F;
-    flight.nearM = std::min(0.05F * aboveM, map.spacingM);
+    flight.nearM = std::min(0.05F * aboveM, greaterM);
     flight.farM = 2.0F * sideM + box.size().y;
     scene.cameras = {overview, flight};
 }

@@ -33,8 +33,8 @@ void printScene(const scene::Scene& scene) {
         scene.instances.size(), scene.materials.size(), scene.textures.size(),
         scene.cameras.size());
     if (scene.heights) {
-        say("heights    {} x {} samples, {:g} m apart{}, {} filled{}\n",
-            scene.heights->sizeSamples.x, scene.heights->sizeSamples.y, scene.heights->spacingM,
+        say("heights    {} x {} samples, {} apart{}, {} filled{}\n", scene.heights->sizeSamples.x,
+            scene.heights->sizeSamples.y, scene::metresText(scene.heights->spacingM),
             scene.heights->isSpacingOfFile ? " as the file says" : "", scene.heights->filledCount,
             scene.heights->isEightBit ? ", of 8 bits" : "");
     }

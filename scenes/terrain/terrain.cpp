@@ -87,7 +87,7 @@ HeightMap fractalTerrain(const FractalTerrain& terrain, std::uint64_t seed) {
     GFXREPRO_ASSERT(terrain.octaves >= 1 && terrain.featureM > 0.0F && terrain.spacingM > 0.0F);
     HeightMap map;
     map.sizeSamples = glm::ivec2(terrain.sizeSamples);
-    map.spacingM = terrain.spacingM;
+    map.spacingM = glm::vec2(terrain.spacingM);
     const auto side = static_cast<std::size_t>(terrain.sizeSamples);
     map.heightsM.resize(side * side);
     tbb::parallel_for(0, terrain.sizeSamples, [&](int row) {
@@ -104,7 +104,7 @@ HeightMap fractalTerrainInFile(const FractalTerrain& terrain, std::uint64_t seed
                                const std::filesystem::path& folder, const std::string& key) {
     HeightMap map;
     map.sizeSamples = glm::ivec2(terrain.sizeSamples);
-    map.spacingM = terrain.spacingM;
+    map.spacingM = glm::vec2(terrain.spacingM);
     // The rows are made twice: how high they reach decides their scale.
     std::optional<glm::vec2> ends;
     const auto makeRow = [&](int row, float* heights) {

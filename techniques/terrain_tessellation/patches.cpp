@@ -59,19 +59,21 @@ double edgeFactor(const TerrainMetadata& metadata, const FactorSettings& setting
                   Edge edge) {
     const int blockSamples = metadata.blockSizeSamples(patch.level);
     const double span = settings.tile.blocksPerPatch * blockSamples;
-    const double spacing = metadata.spacingM();
+    const glm::dvec2 spacing(metadata.spacingM());
+    const bool isAlongZ = edge == kWest || edge == kEast;
     const HeightRange range = edgeRange(metadata, settings.tile, patch, edge);
     const glm::dvec2 ends = edgeEndsM(metadata, settings.tile, patch, edge);
-    const double distance = std::hypot(span * spacing, ends.y - ends.x);  // D, in space
-    const double length =                                                 // L_AB, Eq. (3)
+    const double across = span * (isAlongZ ? spacing.y : spacing.x);
+    const double distance = std::hypot(across, ends.y - ends.x);  // D, in space
+    const double length =                                         // L_AB, Eq. (3)
         std::max(double(range.maxM) - range.minM, distance) + range.errorM;
     glm::dvec2 middle = glm::dvec2(patch.firstBlock * blockSamples) + 0.5 * span;
     if (edge == kWest) middle.x -= 0.5 * span;
     if (edge == kEast) middle.x += 0.5 * span;
     if (edge == kNorth) middle.y -= 0.5 * span;
     if (edge == kSouth) middle.y += 0.5 * span;
-    const glm::dvec3 centre(middle.x * spacing, 0.5 * (double(range.minM) + range.maxM),
-                            middle.y * spacing);
+    const glm::dvec3 centre(middle.x * spacing.x, 0.5 * (double(range.minM) + range.maxM),
+                            middle.y * spacing.y);
 
     const glm::dvec2 halfPx = 0.5 * glm::dvec2(view.sizePx);
     const double nearest = view.nearM;

@@ -77,7 +77,7 @@ class TerrainMetadata {
     int blockSizeSamples(int level) const { return settings_.blockSegments << level; }
     int treeSizeSamples() const { return blockSizeSamples(levelCount_ - 1); }
     glm::ivec2 sizeSamples() const { return sizeSamples_; }
-    float spacingM() const { return spacingM_; }
+    glm::vec2 spacingM() const { return spacingM_; }
 
     /// All levels one after the other, the finest first, each row by row from the north.
     std::span<const Block> blocks() const { return blocks_; }
@@ -94,7 +94,7 @@ class TerrainMetadata {
 
     MetadataSettings settings_;
     glm::ivec2 sizeSamples_{0};
-    float spacingM_ = 1.0F;
+    glm::vec2 spacingM_{1.0F};
     int levelCount_ = 1;
     std::vector<int> firstBlocks_;  // by level
     std::vector<Block> blocks_;

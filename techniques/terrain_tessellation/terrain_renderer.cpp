@@ -174,7 +174,9 @@ gl::Buffer tileRecords(std::span<const Tile> tiles, std::span<const int> layers)
 }
 
 void setTerrain(const gl::Pass& pass, const DeviceTerrain& terrain, const kit::View& view) {
-    pass.setIfActive("spacing", terrain.metadata().spacingM());
+    const glm::vec2 spacing = terrain.metadata().spacingM();
+    pass.setIfActive("spacing", spacing);
+    pass.setIfActive("eastPerSouth", spacing.x / spacing.y);
     pass.setIfActive("lastSample", glm::vec2(terrain.metadata().sizeSamples() - 1));
     pass.setIfActive("clipFromWorld", view.clipFromWorld());
 }
@@ -300,8 +302,8 @@ DrawCounts TerrainRenderer::drawPatches(std::span<const Tile> tiles, const kit::
     const int patchesPerTile = m * m + (hasSkirts ? 4 * m : 0);
     // Skirts end below the lowest sample, by more than depth's rounding.
     const float relief = terrain_->highestM() - terrain_->lowestM();
-    const float foot =
-        terrain_->lowestM() - std::max(0.01F * relief, terrain_->metadata().spacingM());
+    const glm::vec2 spacing = terrain_->metadata().spacingM();
+    const float foot = terrain_->lowestM() - std::max({0.01F * relief, spacing.x, spacing.y});
     tessellated_.set("patchesPerTile", patchesPerTile);
     tessellated_.set("skirtFoot", foot);
     DrawCounts counts;

@@ -221,22 +221,21 @@ glm::vec3 groundColour(glm::vec2 place, float altitude, float slope) {
 /// bare rock on slopes, snow on summits, each mottled. Seeded by nothing: a map has one picture.
 image::Image8 groundPicture(const scene::HeightMap& map, int sidePx) {
     const glm::ivec2 cells = glm::max(map.sizeSamples - 1, 1);
-    const float samplesPerPx =
-        static_cast<float>(std::max(cells.x, cells.y)) / static_cast<float>(sidePx);
+    const glm::vec2 samplesPerPx = samplesPerPixel(map, sidePx);
     const glm::ivec2 size =
         glm::max(glm::ivec2(glm::ceil(glm::vec2(cells) / samplesPerPx)), glm::ivec2(1));
     image::Image8 picture(size.x, size.y, 3);
     const scene::HeightMap::Extremes ends = map.extremes();
-    const int step = std::max(1, static_cast<int>(samplesPerPx));
+    const glm::ivec2 step = glm::max(glm::ivec2(samplesPerPx), 1);
+    const glm::vec2 stepM = glm::vec2(step) * map.spacingM;
     const auto paintRow = [&](int y) {
         for (int x = 0; x < size.x; ++x) {
             const glm::ivec2 at((glm::vec2(x, y) + 0.5F) * samplesPerPx);
             const float east =
-                map.clampedHeightM(at.x + step, at.y) - map.clampedHeightM(at.x - step, at.y);
+                map.clampedHeightM(at.x + step.x, at.y) - map.clampedHeightM(at.x - step.x, at.y);
             const float south =
-                map.clampedHeightM(at.x, at.y + step) - map.clampedHeightM(at.x, at.y - step);
-            const float slope =
-                std::hypot(east, south) / (2.0F * static_cast<float>(step) * map.spacingM);
+                map.clampedHeightM(at.x, at.y + step.y) - map.clampedHeightM(at.x, at.y - step.y);
+            const float slope = std::hypot(east, south * (stepM.x / stepM.y)) / (2.0F * stepM.x);
             const float altitude = (map.clampedHeightM(at.x, at.y) - ends.lowestM) / ends.reliefM();
             const glm::vec3 colour = groundColour(glm::vec2(x, y), altitude, slope);
             for (int c = 0; c < 3; ++c) {
@@ -369,11 +368,10 @@ TileSelection TerrainTessellation::selectTiles() const {
 /// Cells of the finest level end where they are ΔS pixels wide, but not nearer than a tile and a
 /// half: a tile may not touch one two levels coarser.
 MorphRanges TerrainTessellation::morphRanges() const {
-    const float tileM =
-        metadata_->spacingM() * static_cast<float>(params_.metadata.blockSegments *
-                                                   params_.render.factors.tile.blocksPerTile());
-    const float wantedM =
-        metadata_->spacingM() * tileView_.pixelsPerTangent / params_.render.factors.segmentPx;
+    const float greaterM = std::max(metadata_->spacingM().x, metadata_->spacingM().y);
+    const float tileM = greaterM * static_cast<float>(params_.metadata.blockSegments *
+                                                      params_.render.factors.tile.blocksPerTile());
+    const float wantedM = greaterM * tileView_.pixelsPerTangent / params_.render.factors.segmentPx;
     MorphRanges ranges;
     float rangeM = std::max(wantedM, 2.0F * std::sqrt(2.0F) * tileM);
     for (int level = 0; level < tree_->levelCount(); ++level, rangeM *= 2.0F) {

@@ -18,10 +18,13 @@ constexpr glm::vec3 kDrawn(0.35F, 0.75F, 0.3F), kCulledPatch(0.95F, 0.55F, 0.15F
     kCulledTile(0.4F, 0.4F, 0.42F), kTileBorder(1.0F);
 
 /// Lit from the north-west, so that the ground can be told.
-float lightAt(const scene::HeightMap& map, glm::ivec2 at, int step) {
-    const float rise =
-        map.clampedHeightM(at.x - step, at.y - step) - map.clampedHeightM(at.x + step, at.y + step);
-    const float slope = rise / (2.0F * std::sqrt(2.0F) * static_cast<float>(step) * map.spacingM);
+float lightAt(const scene::HeightMap& map, glm::ivec2 at, glm::ivec2 step) {
+    const glm::ivec2 from = at - step, to = at + step;
+    const float rise = map.clampedHeightM(from.x, from.y) - map.clampedHeightM(to.x, to.y);
+    const glm::vec2 stepM = glm::vec2(step) * map.spacingM;
+    const float ratio = stepM.y / stepM.x;
+    const float slope = rise / (2.0F * std::sqrt(1.0F + ratio * ratio) *
+                                static_cast<float>(step.x) * map.spacingM.x);
     return std::clamp(0.8F - 1.5F * slope, 0.35F, 1.2F);
 }
 
@@ -33,18 +36,17 @@ image::ImageF cullingPicture(const scene::HeightMap& map, std::span<const Tile> 
                              const TileSettings& settings, std::span<const PatchFactors> factors,
                              const glm::mat4& clipFromWorld, bool isCulling, int sizePx) {
     const glm::ivec2 cells = glm::max(map.sizeSamples - 1, 1);
-    const float samplesPerPx =
-        static_cast<float>(std::max(cells.x, cells.y)) / static_cast<float>(sizePx);
+    const glm::vec2 samplesPerPx = samplesPerPixel(map, sizePx);
     const glm::ivec2 size = glm::max(glm::ivec2(glm::vec2(cells) / samplesPerPx), glm::ivec2(1));
     image::ImageF picture(size.x, size.y, 3);
     const int side = settings.patchesPerTile;
-    const int step = std::max(1, static_cast<int>(samplesPerPx));
+    const glm::ivec2 step = glm::max(glm::ivec2(samplesPerPx), 1);
     for (std::size_t t = 0; t < tiles.size(); ++t) {
         const Tile& tile = tiles[t];
         const bool isTileCulled = isCulling && !mayBeVisible(tile.box, clipFromWorld);
         const glm::vec2 origin = glm::vec2(tile.originSample) / samplesPerPx;
-        const float tilePx = static_cast<float>(tile.sizeSamples) / samplesPerPx;
-        const float patchPx = tilePx / static_cast<float>(side);
+        const glm::vec2 tilePx = static_cast<float>(tile.sizeSamples) / samplesPerPx;
+        const glm::vec2 patchPx = tilePx / static_cast<float>(side);
         const glm::ivec2 from(glm::ceil(origin)),
             to = glm::min(glm::ivec2(glm::ceil(origin + tilePx)), size);
         for (int y = from.y; y < to.y; ++y) {
@@ -59,7 +61,8 @@ image::ImageF cullingPicture(const scene::HeightMap& map, std::span<const Tile> 
                                                                    : kDrawn;
                 colour *= lightAt(map, glm::ivec2(glm::vec2(x, y) * samplesPerPx), step);
                 // Borders of patches only where patches are wider than lines.
-                if (patchPx >= 4.0F && glm::any(glm::lessThan(fromBorderPx, glm::vec2(1.0F)))) {
+                if (std::min(patchPx.x, patchPx.y) >= 4.0F &&
+                    glm::any(glm::lessThan(fromBorderPx, glm::vec2(1.0F)))) {
                     colour *= 0.6F;
                 }
                 if (x == from.x || y == from.y) colour = kTileBorder;

@@ -29,7 +29,7 @@ Frame frameOf(const scene::HeightMap& map) {
     Frame frame;
     const glm::vec2 size = glm::vec2(map.sizeSamples - 1) * map.spacingM;
     frame.centre = 0.5F * size;
-    frame.sideM = std::max({size.x, size.y, map.spacingM});
+    frame.sideM = std::max({size.x, size.y, map.spacingM.x, map.spacingM.y});
     const scene::HeightMap::Extremes ends = map.extremes();
     // A sixth of the relief over the ground is a low flight; over a plain, a hundredth of its side.
     frame.clearanceM = std::max((ends.highestM - ends.lowestM) / 6.0F, 0.01F * frame.sideM);
@@ -157,6 +157,14 @@ Cell cellAt(const scene::HeightMap& map, float x, float z) {
 }
 
 }  // namespace
+
+glm::vec2 samplesPerPixel(const scene::HeightMap& map, int longerSidePx) {
+    constexpr float kLeastShare = 1e-4F;  // of a map at a pole: a pixel wide anyway
+    const glm::vec2 share =
+        glm::max(map.spacingM / std::max(map.spacingM.x, map.spacingM.y), kLeastShare);
+    const glm::vec2 sides = glm::vec2(glm::max(map.sizeSamples - 1, 1)) * share;
+    return std::max(sides.x, sides.y) / static_cast<float>(longerSidePx) / share;
+}
 
 float heightAt(const scene::HeightMap& map, float x, float z) {
     const Cell cell = cellAt(map, x, z);

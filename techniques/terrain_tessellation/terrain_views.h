@@ -28,6 +28,8 @@ class TerrainView {
     bool isByPlaces_ = false;
 };
 
+/// Along x and z, of a map's picture true to scale, `longerSidePx` along its longer side.
+glm::vec2 samplesPerPixel(const scene::HeightMap& map, int longerSidePx);
 /// The height of the terrain's surface, bilinear between samples, its border's beyond them.
 float heightAt(const scene::HeightMap& map, float x, float z);
 /// Of the truth's triangles: a cell is cut from its south-western to its north-eastern sample.

@@ -80,7 +80,7 @@ class TileTree {
     TileSettings settings_;
     int blockSegments_ = 32;
     glm::ivec2 sizeSamples_{0};
-    float spacingM_ = 1.0F;
+    glm::vec2 spacingM_{1.0F};
     std::vector<Level> levels_;
 };
 

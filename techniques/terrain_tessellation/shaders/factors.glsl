@@ -60,7 +60,7 @@ float edgeFactor(Patch p, int edge) {
     vec3 range = edgeRange(p, edge);
     ivec2 corner = ivec2(edge == 2 ? 1 : 0, edge == 3 ? 1 : 0);
     ivec2 next = corner + ((edge & 1) == 0 ? ivec2(0, 1) : ivec2(1, 0));
-    precise float across = float(span) * spacing;
+    precise float across = float(span) * ((edge & 1) == 0 ? spacing.y : spacing.x);
     precise float up = cornerHeight(p, next) - cornerHeight(p, corner);
     precise float D = sqrt(across * across + up * up);  // in space
     precise float L = max(range.y - range.x, D) + range.z;  // Eq. (3): L_AB

@@ -5,8 +5,9 @@ layout(std430) readonly buffer Tiles {
 };
 // A layer has every 2^level-th sample of a tile and a border: HeightPages.
 uniform sampler2DArray heightPages;
-uniform float spacing;    // metres between samples
-uniform vec2 lastSample;  // the south-eastern one: tiles may reach beyond, the ground does not
+uniform vec2 spacing;        // metres between samples
+uniform float eastPerSouth;  // of these
+uniform vec2 lastSample;     // the south-eastern one: tiles may reach beyond, the ground does not
 uniform mat4 clipFromWorld;
 
 struct Ground {
@@ -48,11 +49,11 @@ Ground groundAt(ivec4 tile, vec2 at) {
     ground.height = height;
     float east = mix(mix(b - w0, e0 - a, part.x), mix(d - w1, e1 - c, part.x), part.y);
     float south = mix(mix(c - n0, d - n1, part.x), mix(s0 - a, s1 - b, part.x), part.y);
-    float across = 2.0 * spacing * float(1 << tile.z);
-    ground.normal = normalize(vec3(-east, across, -south));
+    float across = 2.0 * spacing.x * float(1 << tile.z);
+    ground.normal = normalize(vec3(-east, across, -south * eastPerSouth));
     return ground;
 }
 
 vec3 worldOf(vec2 at, float height) {
-    return vec3(at.x * spacing, height, at.y * spacing);
+    return vec3(at.x * spacing.x, height, at.y * spacing.y);
 }

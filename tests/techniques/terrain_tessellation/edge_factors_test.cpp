@@ -10,8 +10,14 @@ const std::array kViews{std::array{glm::vec3(-20, 60, 300), glm::vec3(128, 10, 1
                         std::array{glm::vec3(128, 300, 128), glm::vec3(129, 0, 127)}};
 
 TEST_F(TerrainTest, ReplayedFactorsAreThoseOfTheDoublePrecisionReference) {
-    makeTerrain(roughMap(257, 40.0F));
-    for (const Segment segment : {Segment::Vertical, Segment::ViewFacing, Segment::Sphere}) {
+    scene::HeightMap rough = roughMap(257, 40.0F);
+    for (const auto& [spacingM, segment] : {std::pair(glm::vec2(1, 1), Segment::Vertical),
+                                            {{1, 1}, Segment::ViewFacing},
+                                            {{1, 1}, Segment::Sphere},
+                                            {{2, 1}, Segment::Vertical},
+                                            {{1, 2}, Segment::Sphere}}) {
+        rough.spacingM = spacingM;
+        makeTerrain(rough);
         RenderSettings set = settings();
         set.factors.segment = segment;
         set.cullsPatches = false;
@@ -44,6 +50,26 @@ TEST_F(TerrainTest, AKnownEdgeHasItsFactorByHand) {
     const kit::View view = viewAt({8, 0, -40}, {8, 0, 0});
     const double expected = 16.0 * 50.0 / std::tan(0.45) / 40.0;
     EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, kNorth), expected, 1e-3);
+}
+
+TEST_F(TerrainTest, AnEdgeIsAsLongAsTheSpacingOfItsAxisSays) {
+    scene::HeightMap flat = roughMap(257, 0.0F);
+    flat.spacingM = {1.0F, 2.0F};
+    makeTerrain(flat);
+    RenderSettings set = settings();
+    set.factors.segmentPx = 2.0F;
+    set.cullsPatches = false;
+    FactorReplay replay(shaders, *terrain, set);
+    const double perMetre = 50.0 / std::tan(0.45) / 40.0 / 2.0;
+    // 16 along x and 32 along z, each seen from 40 in front of its middle.
+    for (const auto& [edge, eye, middle, lengthM] :
+         {std::tuple(kNorth, glm::vec3(8, 0, -40), glm::vec3(8, 0, 0), 16.0),
+          std::tuple(kWest, glm::vec3(-40, 0, 16), glm::vec3(0, 0, 16), 32.0)}) {
+        const kit::View view = viewAt(eye, middle);
+        const double expected = lengthM * perMetre;
+        EXPECT_NEAR(edgeFactor(*metadata, set.factors, view, {0, {0, 0}}, edge), expected, 1e-3);
+        EXPECT_NEAR(replay.run(tilesOf(0), view)[0].outer[edge], expected, 1e-3 * expected);
+    }
 }
 
 TEST_F(TerrainTest, ASlopingEdgeIsAsLongAsInSpace) {

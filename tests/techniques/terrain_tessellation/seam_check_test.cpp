@@ -77,6 +77,19 @@ TEST_F(SeamCheckTest, NorWhereTheMapEndsWithinTiles) {
     }
 }
 
+TEST_F(SeamCheckTest, NorWhereSamplesStandFurtherApartOneWay) {
+    scene::HeightMap uneven = roughMap(257, 60.0F);
+    for (const glm::vec2 spacingM : {glm::vec2(2, 1), glm::vec2(1, 2)}) {
+        uneven.spacingM = spacingM;
+        makeTerrain(uneven);
+        for (const kit::View& view : terrainViews()) {
+            const Seams seams = seamsOf(capturing(), tilesOf(0), view);
+            EXPECT_GT(seams.edges, 1000U);
+            EXPECT_EQ(seams.openEdges, 0U) << spacingM.x;
+        }
+    }
+}
+
 TEST_F(SeamCheckTest, UnequalFactorsLeaveEdgesOpen) {
     const kit::View view = terrainViews()[0];
     EXPECT_GT(seamsOf(capturing(EdgeRule::OwnPatch), tilesOf(0), view).openEdges, 100U);

@@ -17,13 +17,13 @@ class TerrainCracksTest : public TerrainTest {
     /// From 8 to 80 m above the ground or beside the map, in any direction but upwards.
     kit::View randomView(std::mt19937& random) const {
         glm::vec3 eye(0.0F);
-        eye.z = anywhere(random, -60, 316);
-        eye.x = anywhere(random, -60, 316);
+        eye.z = anywhere(random, -60, 316) * map.spacingM.y;
+        eye.x = anywhere(random, -60, 316) * map.spacingM.x;
+        const glm::ivec2 place(glm::vec2(eye.x, eye.z) / map.spacingM);
         float ground = 0.0F;
         for (int i = -8; i <= 8; ++i) {
             for (int j = -8; j <= 8; ++j) {
-                ground = std::max(ground, map.clampedHeightM(static_cast<int>(eye.x) + i,
-                                                             static_cast<int>(eye.z) + j));
+                ground = std::max(ground, map.clampedHeightM(place.x + i, place.y + j));
             }
         }
         eye.y = ground + anywhere(random, 8, 80);
@@ -79,6 +79,16 @@ TEST_F(TerrainCracksTest, NoBackgroundShowsFrom800Places) {
         EXPECT_GT(found.viewsOfSeveralLevels, kViewCount / 4) << seed;
         EXPECT_GT(found.covered, 200U * 96U * 60U / 4U) << seed;
     }
+}
+
+TEST_F(TerrainCracksTest, NorWhereSamplesStandFurtherApartOneWay) {
+    scene::HeightMap uneven = roughMap(257, 60.0F);
+    uneven.spacingM = {1.0F, 2.0F};
+    makeTerrain(uneven);
+    const Found found = cracksOver(kViewCount / 2, true, EdgeRule::Shared);
+    EXPECT_EQ(found.crackPixels, 0U);
+    EXPECT_GT(found.viewsOfSeveralLevels, kViewCount / 8);
+    EXPECT_GT(found.covered, 100U * 96U * 60U / 4U);
 }
 
 TEST_F(TerrainCracksTest, TheyAreSeenWithoutSkirtsAndWithFactorsOfThePatch) {

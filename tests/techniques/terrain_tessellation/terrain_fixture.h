@@ -20,7 +20,7 @@ namespace gfxrepro::terrain_tessellation {
 inline scene::HeightMap roughMap(int side, float reliefM) {
     scene::HeightMap map;
     map.sizeSamples = {side, side};
-    map.spacingM = 1.0F;
+    map.spacingM = glm::vec2(1.0F);
     std::mt19937 random(7);
     for (int row = 0; row < side; ++row) {
         for (int column = 0; column < side; ++column) {

@@ -138,7 +138,7 @@ scene::Scene terrainScene() {
     scene::Scene scene;
     scene::HeightMap map;
     map.sizeSamples = {33, 33};
-    map.spacingM = 10.0F;
+    map.spacingM = glm::vec2(10.0F);
     for (int row = 0; row < 33; ++row) {
         for (int column = 0; column < 33; ++column) {
             map.heightsM.push_back(static_cast<float>(column + 2 * row));
@@ -155,11 +155,21 @@ TEST(TerrainViewsTest, HeightsAreBilinearAndGoOnBeyondTheBorder) {
     EXPECT_FLOAT_EQ(heightAt(map, 1e6F, 1e6F), 96.0F);
 }
 
+TEST(TerrainViewsTest, SpacingsMayDiffer) {
+    scene::Scene scene = terrainScene();
+    scene.heights->spacingM = {10.0F, 20.0F};
+    EXPECT_FLOAT_EQ(heightAt(*scene.heights, 15.0F, 50.0F), 1.5F + 5.0F);
+    EXPECT_FLOAT_EQ(drawnHeightAt(*scene.heights, 15.0F, 50.0F), 1.5F + 5.0F);
+    const scene::Camera overview = TerrainView(scene, "overview").camera(0, 1, 1.6F);
+    EXPECT_EQ(overview.target, glm::vec3(160.0F, 48.0F, 320.0F));
+    EXPECT_EQ(samplesPerPixel(*scene.heights, 64), glm::vec2(1.0F, 0.5F));
+}
+
 // NW 0, NE 1, SW 1, SE 10: the middle lies on the edge from south-west to north-east.
 TEST(TerrainViewsTest, HeightsOfTheTruthAreItsTriangles) {
     scene::HeightMap map;
     map.sizeSamples = {2, 2};
-    map.spacingM = 10.0F;
+    map.spacingM = glm::vec2(10.0F);
     map.heightsM = {0.0F, 1.0F, 1.0F, 10.0F};
     EXPECT_FLOAT_EQ(drawnHeightAt(map, 0.0F, 10.0F), 1.0F);
     EXPECT_FLOAT_EQ(drawnHeightAt(map, 10.0F, 10.0F), 10.0F);

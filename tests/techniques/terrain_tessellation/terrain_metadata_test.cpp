@@ -16,7 +16,7 @@ namespace {
 scene::HeightMap randomMap(int width, int height) {
     scene::HeightMap map;
     map.sizeSamples = {width, height};
-    map.spacingM = 2.0F;
+    map.spacingM = glm::vec2(2.0F);
     Random random(7);
     for (int i = 0; i < width * height; ++i) map.heightsM.push_back(random.uniform(-50.0F, 90.0F));
     return map;

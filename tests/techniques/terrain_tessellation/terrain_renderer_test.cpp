@@ -115,6 +115,58 @@ TEST_F(FlatTerrainTest, IsDrawnAsThePlaneAndEndsAtItsMapByEveryMethod) {
     }
 }
 
+/// 256 by 256 m of a plane.
+scene::HeightMap inclined(glm::vec2 spacingM) {
+    scene::HeightMap map;
+    map.sizeSamples = glm::ivec2(256.0F / spacingM) + 1;
+    map.spacingM = spacingM;
+    for (int row = 0; row < map.sizeSamples.y; ++row) {
+        for (int column = 0; column < map.sizeSamples.x; ++column) {
+            const glm::vec2 at = glm::vec2(column, row) * spacingM;
+            map.heightsM.push_back(0.5F * at.x + 0.25F * at.y);
+        }
+    }
+    return map;
+}
+
+TEST_F(TerrainTest, SamplesThatStandFurtherApartOneWayShowTheSameGround) {
+    const kit::View view = viewAt({128, 500, 500}, {128, 96, 128}, kPictureSize);
+    std::vector<std::vector<glm::vec4>> pictures;
+    for (const glm::vec2 spacingM : {glm::vec2(1, 1), glm::vec2(2, 1), glm::vec2(1, 2)}) {
+        makeTerrain(inclined(spacingM));
+        RenderSettings set = settings();
+        set.factors.smallest = set.factors.greatest = 16.0F;  // every sample is a vertex
+        set.hasSkirts = false;
+        TerrainRenderer renderer(shaders, *terrain, set);
+        pictures.push_back(picture(kPictureSize, [&](const gl::Framebuffer& target) {
+            renderer.drawTessellated(tilesOf(0), view, target);
+        }));
+        pictures.push_back(picture(kPictureSize, [&](const gl::Framebuffer& target) {
+            renderer.drawGrid(tilesOf(0), view, target);
+        }));
+    }
+    int ground = 0, background = 0;
+    for (int y = 0; y < kPictureSize.y; ++y) {
+        for (int x = 0; x < kPictureSize.x; ++x) {
+            const glm::vec3 slope(-0.5F, 1.0F, -0.25F), eye = view.eyeWorld;
+            const glm::vec3 ray =
+                kit::rayThrough(view, {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F});
+            const glm::vec3 hit = eye - glm::dot(eye, slope) / glm::dot(ray, slope) * ray;
+            const float inside =
+                std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
+            if (std::abs(inside) < 6.0F) continue;  // on the rim, whose slope is halved
+            ++(inside > 0.0F ? ground : background);
+            const auto at = static_cast<std::size_t>(y * kPictureSize.x + x);
+            for (const auto& pixels : pictures) {
+                ASSERT_EQ(pixels[at].a, inside > 0.0F ? 1.0F : 0.0F) << x << ' ' << y;
+                ASSERT_LT(glm::distance(pixels[at], pictures[0][at]), 1e-3F) << x << ' ' << y;
+            }
+        }
+    }
+    EXPECT_GT(ground, 2000);
+    EXPECT_GT(background, 2000);
+}
+
 TEST_F(TerrainTest, CullingChangesNoPixelAndDropsPatches) {
     makeTerrain(roughMap(257, 60.0F));
     RenderSettings set = settings();

@@ -17,7 +17,7 @@ scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
     scene::Scene scene;
     scene::HeightMap map;
     map.sizeSamples = size;
-    map.spacingM = 10.0F;
+    map.spacingM = glm::vec2(10.0F);
     for (int row = 0; row < size.y; ++row) {
         for (int column = 0; column < size.x; ++column) {
             const double x = column, z = row;
@@ -165,6 +165,22 @@ TEST_F(TerrainTessellationTest, TheTruthHasNoHeightError) {
     const auto coarse = measured("delta_s: 4, errors: true", scene);
     EXPECT_LT(truth.at("height_error_px/mean"), 0.01 * coarse.at("height_error_px/mean"));
     EXPECT_LT(truth.at("height_error_px/max"), 0.05);
+}
+
+TEST_F(TerrainTessellationTest, SpacingsMayDiffer) {
+    scene::Scene scene = terrain({257, 257});
+    const std::string adaptive = "delta_s: 1, seams: true, errors: true, pictures: true";
+    const auto even = measured(adaptive, scene);
+    scene.heights->spacingM = {10.0F, 20.0F};
+    EXPECT_LT(measured("method: uniform_grid, errors: true", scene).at("height_error_px/max"),
+              0.05);
+    const auto uneven = recorded("{cache: false, " + adaptive + "}", &scene);
+    EXPECT_LT(uneven.metrics.at("height_error_px/mean"), 1.5 * even.at("height_error_px/mean"));
+    for (const char* none : {"open_edges", "factor_mismatches", "crack_pixels/background"}) {
+        EXPECT_EQ(uneven.metrics.at(none), 0.0) << none;
+    }
+    EXPECT_EQ(uneven.images.at("culling").width(), 32) << "to scale";
+    EXPECT_EQ(uneven.images.at("culling").height(), 64);
 }
 
 TEST_F(TerrainTessellationTest, UnequalFactorsCrack) {

@@ -23,7 +23,7 @@ scene::HeightMap hills(int width, int height) {
     scene::HeightMap square = scene::fractalTerrain(shape, 3);
     scene::HeightMap map;
     map.sizeSamples = {width, height};
-    map.spacingM = square.spacingM;
+    map.spacingM = square.spacingM * glm::vec2(1.0F, 1.5F);
     for (int row = 0; row < height; ++row) {
         for (int column = 0; column < width; ++column) {
             map.heightsM.push_back(square.heightM(column, row));

@@ -365,12 +365,12 @@ TEST(JsonSchema, RefusesWrongScenes) {
     const JsonSchema scene("scene");
     const std::string head = "scene: a/b\ndoc: d\nsources: ";
     EXPECT_EQ(scene.complaintAbout(head + "[{file: a.ply}, {generator: terrain, seed: 1}]"), "");
+    EXPECT_EQ(scene.complaintAbout(head + "[{height_map: a.png}]"), "");
     for (const char* bad :
          {"[]", "[{}]", "{file: a.ply}", "[{file: /a.ply}]", "[{file: a.ply, up: x}]",
           "[{file: a.ply, generator: terrain}]", "[{generator: terrian}]",
-          "[{generator: terrain, seed: -1}]", "[{height_map: a.png}]",
-          "[{height_map: a.png, spacing_m: 0}]", "[{height_map: a.png, spacing_m: 1, detail_m: 1}]",
-          "[{file: a.ply, points: 0}]"}) {
+          "[{generator: terrain, seed: -1}]", "[{height_map: a.png, spacing_m: 0}]",
+          "[{height_map: a.png, detail_m: 1}]", "[{file: a.ply, points: 0}]"}) {
         EXPECT_NE(scene.complaintAbout(head + bad), "") << bad;
     }
 }

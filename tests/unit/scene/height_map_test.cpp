@@ -335,6 +335,33 @@ TEST(HeightMap, HolesAreFilledFromAround) {
     EXPECT_LT(map.heightM(2, 2), map.heightM(37, 20));
 }
 
+TEST(HeightMap, SamplesMayStandFurtherApartOneWay) {
+    for (const glm::vec2 spacingM : {glm::vec2(10, 20), glm::vec2(20, 10)}) {
+        Scene scene;
+        HeightMap& map = scene.heights.emplace();
+        map.sizeSamples = {5, 9};
+        map.spacingM = spacingM;
+        for (int i = 0; i < 45;
+             ++i) {  // rises by a half to the east, falls by a quarter southwards
+            const glm::vec2 at = glm::vec2(i % 5, i / 5) * spacingM;
+            map.heightsM.push_back(0.5F * at.x - 0.25F * at.y);
+        }
+        const glm::vec3 end = glm::vec3(4, 0, 8) * glm::vec3(spacingM.x, 0, spacingM.y);
+        EXPECT_EQ(map.bounds().min, glm::vec3(0, -0.25F * end.z, 0));
+        EXPECT_EQ(map.bounds().max, glm::vec3(end.x, 0.5F * end.x, end.z));
+        const Mesh mesh = heightMapMesh(map);
+        EXPECT_EQ(mesh.positions.back(), glm::vec3(end.x, 0.5F * end.x - 0.25F * end.z, end.z));
+        const glm::vec3 normal = glm::normalize(glm::vec3(-0.5F, 1.0F, 0.25F));
+        for (const glm::vec3& found : mesh.normals) EXPECT_LT(glm::distance(found, normal), 1e-5F);
+        EXPECT_EQ(resampled(map, 17, 0.0F, 1).spacingM, 0.5F * spacingM);
+        addTerrainCameras(scene);
+        const glm::vec3 flight = scene.cameras.at(1).position;
+        EXPECT_EQ(glm::vec2(flight.x, flight.z), glm::vec2(2, 6) * spacingM);
+    }
+    EXPECT_EQ(metresText({10.0F, 20.0F}), "10 x 20 m");
+    EXPECT_EQ(metresText({0.1F, 0.1F}), "0.1 m");
+}
+
 TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
     FractalTerrain shape;
     shape.sizeSamples = 33;
@@ -342,7 +369,7 @@ TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
     const HeightMap coarse = fractalTerrain(shape, 5);
     const HeightMap smooth = resampled(coarse, 257, 0.0F, 1);
     const HeightMap rough = resampled(coarse, 257, 30.0F, 1);
-    EXPECT_EQ(rough.spacingM, 20.0F);
+    EXPECT_EQ(rough.spacingM, glm::vec2(20.0F));
     float greatest = 0.0F;
     for (int row = 0; row < 257; ++row) {
         for (int column = 0; column < 257; ++column) {

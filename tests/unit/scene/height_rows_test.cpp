@@ -175,7 +175,7 @@ TEST_F(HeightRows, MapsInFilesAreThoseInMemory) {
             const HeightMap map = loadHeightMapInFile(at(name), units, folder.path(), name, 100);
             ASSERT_NE(map.file, nullptr);
             EXPECT_EQ(map.sizeSamples, glm::ivec2(70, 150));
-            EXPECT_EQ(map.spacingM, 3.0F);
+            EXPECT_EQ(map.spacingM, glm::vec2(3.0F));
             EXPECT_EQ(map.filledCount, inMemory.filledCount);
             const float* heights = map.file->heightsM(0);
             EXPECT_EQ(std::vector<float>(heights, heights + 70 * 150), first) << name;

@@ -69,7 +69,7 @@ TEST_F(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     EXPECT_FLOAT_EQ(map.heightM(0, 0), 100.0F);
     EXPECT_FLOAT_EQ(map.heightM(1, 1), 103.0F);
     EXPECT_FLOAT_EQ(loadHeightMap(path, {1.0F, 2.0F, 10.0F}).heightM(1, 1), 206.0F);
-    EXPECT_EQ(map.spacingM, 1.0F);
+    EXPECT_EQ(map.spacingM, glm::vec2(1.0F));
     EXPECT_FALSE(map.isSpacingOfFile);
 }
 
@@ -185,6 +185,12 @@ TEST_F(HeightUnits, ZOfTheModelIsApplied) {
               "allowed: the same, or of one alone");
 }
 
+/// Along x and z, to some digits.
+void expectSpacing(glm::vec2 found, float x, float z) {
+    EXPECT_NEAR(found.x, x, 4e-4F * x);
+    EXPECT_NEAR(found.y, z, 4e-4F * z);
+}
+
 TEST_F(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
     const fs::path path = folder.path() / "a.tif";
     const auto spacing = [&](std::vector<double> scale, std::vector<std::uint16_t> keys) {
@@ -192,14 +198,18 @@ TEST_F(HeightUnits, SpacingComesFromTheFileUnlessItIsGiven) {
             .spacingM;
     };
     const std::vector<std::uint16_t> projected{1, 1, 0, 1, 1024, 0, 1, 1};
-    EXPECT_EQ(spacing({30, 30, 0}, projected), 30.0F);
-    EXPECT_EQ(spacing({30, 30, 0}, {}), 30.0F);
-    EXPECT_FLOAT_EQ(spacing({30, 30, 0}, {1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002}), 9.144F);
-    EXPECT_NEAR(spacing({1.0 / 3600, 1.0 / 3600, 0}, {1, 1, 0, 1, 1024, 0, 1, 2}), 30.87F, 0.01F);
-    EXPECT_EQ(spacing({}, projected), 1.0F);
-    writeGeoTiff(path, nullptr, {30, 30, 0}, projected);
+    EXPECT_EQ(spacing({30, 30, 0}, projected), glm::vec2(30.0F));
+    EXPECT_EQ(spacing({30, 30, 0}, {}), glm::vec2(30.0F));
+    EXPECT_EQ(spacing({30, 10, 0}, projected), glm::vec2(30.0F, 10.0F));
+    const std::vector<std::uint16_t> feet{1, 1, 0, 2, 1024, 0, 1, 1, 3076, 0, 1, 9002};
+    expectSpacing(spacing({30, 60, 0}, feet), 9.144F, 18.288F);
+    const std::vector<std::uint16_t> degrees{1, 1, 0, 1, 1024, 0, 1, 2};
+    expectSpacing(spacing({1.0 / 3600, 1.0 / 3600, 0}, degrees), 30.87F, 30.87F);
+    EXPECT_EQ(spacing({}, projected), glm::vec2(1.0F));
+    writeGeoTiff(path, nullptr, {30, 10, 0}, projected);
     EXPECT_TRUE(loadHeightMap(path, {}).isSpacingOfFile);
-    EXPECT_EQ(loadHeightMap(path, {2.0F, 1.0F, {}}).spacingM, 2.0F);
+    EXPECT_EQ(loadHeightMap(path, {}).bounds().max, glm::vec3(30, 30, 10));
+    EXPECT_EQ(loadHeightMap(path, {2.0F, 1.0F, {}}).spacingM, glm::vec2(2.0F));
     EXPECT_FALSE(loadHeightMap(path, {2.0F, 1.0F, {}}).isSpacingOfFile);
 }
 
@@ -208,10 +218,12 @@ TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
     // Samples 10 m apart, turned by 3-4-5: 6 east and 8 south a column, 8 west and 6 south a row.
     const std::vector<double> turned{6, -8, 0, 5e5, -8, -6, 0, 4e6, 0, 0, 0, 0, 0, 0, 0, 1};
     writeGeoTiff(path, nullptr, {}, {1, 1, 0, 1, 1024, 0, 1, 1}, turned);
-    EXPECT_FLOAT_EQ(loadHeightMap(path, {}).spacingM, 10.0F);
+    expectSpacing(loadHeightMap(path, {}).spacingM, 10.0F, 10.0F);
     const auto spacing = [&](std::vector<std::uint16_t> keys, std::vector<double> doubles = {}) {
         writeGeoTiff(path, nullptr, {0.5, 0.5, 0}, std::move(keys), {}, std::move(doubles));
-        return loadHeightMap(path, {}).spacingM;
+        const glm::vec2 both = loadHeightMap(path, {}).spacingM;
+        EXPECT_EQ(both.x, both.y);
+        return both.x;
     };
     EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9036}), 500.0F);
     EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9003}), 600.0F / 3937.0F);
@@ -232,28 +244,28 @@ TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
     // Who says it does not need the file's.
     HeightMapUnits units;
     units.spacingM = 5.0F;
-    EXPECT_EQ(loadHeightMap(folder.path() / "a.tif", units).spacingM, 5.0F);
+    EXPECT_EQ(loadHeightMap(folder.path() / "a.tif", units).spacingM, glm::vec2(5.0F));
 }
 
-TEST_F(HeightUnits, SamplesThatStandOnNoSquaresAreRefused) {
+TEST_F(HeightUnits, SamplesThatStandAskewAreRefused) {
     const fs::path path = folder.path() / "a.tif";
-    const auto error = [&](std::vector<double> scale, std::vector<double> transform) {
-        writeGeoTiff(path, nullptr, std::move(scale), {}, std::move(transform));
+    const auto error = [&](std::vector<double> scale, std::vector<double> transform,
+                           std::vector<std::uint16_t> keys = {}) {
+        writeGeoTiff(path, nullptr, std::move(scale), std::move(keys), std::move(transform));
         return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
     };
-    EXPECT_EQ(error({30, 10, 0}, {}),
-              "DIR/a.tif: its samples stand 30 apart along x and 10 along y; allowed: the same, on "
-              "squares");
-    EXPECT_EQ(error({}, {30, 0, 0, 0, 0, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
-              "DIR/a.tif: its samples stand 30 apart along x and 10 along y; allowed: the same, on "
-              "squares");
-    EXPECT_EQ(error({}, {10, 6, 0, 0, 0, -8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}),
-              "DIR/a.tif: its samples stand 10 apart along x and 10 along y, askew; allowed: the "
-              "same, on squares");
+    EXPECT_EQ(error({}, {30, 0, 0, 0, 0, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), "no error");
+    EXPECT_EQ(loadHeightMap(path, {}).spacingM, glm::vec2(30.0F, 10.0F));
+    const std::string askew = "DIR/a.tif: its rows and columns are askew; allowed: at right angles";
+    EXPECT_EQ(error({}, {10, 6, 0, 0, 0, -8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), askew);
     HeightMapUnits units;
     units.spacingM = 8.0F;
-    EXPECT_EQ(loadHeightMap(path, units).spacingM, 8.0F) << "by who reads it";
-    EXPECT_EQ(error({30.001, 30, 0}, {}), "no error") << "rounded";
+    EXPECT_EQ(loadHeightMap(path, units).spacingM, glm::vec2(8.0F)) << "by who reads it";
+    // Turned in degrees at 60 degrees north, where those from west to east are half as long.
+    const std::vector<std::uint16_t> degrees{1, 1, 0, 1, 1024, 0, 1, 2};
+    EXPECT_EQ(error({}, {1, -1, 0, 0, -1, -1, 0, 62, 0, 0, 0, 0, 0, 0, 0, 1}, degrees), askew);
+    EXPECT_EQ(error({}, {0, 1, 0, 0, 1, 0, 0, 59, 0, 0, 0, 0, 0, 0, 0, 1}, degrees), "no error");
+    expectSpacing(loadHeightMap(path, {}).spacingM, 111133.0F, 55566.0F);
     const std::string north =
         "DIR/a.tif: its rows go north; allowed: from west to east and north to south";
     EXPECT_EQ(error({30, -30, 0}, {}), north);
@@ -319,78 +331,81 @@ TEST_F(HeightUnits, MapsThatAreNotTrueToScaleAreCorrectedOrSaid) {
     constexpr double kAt60M = 8399737.89;  // ln(tan(75°)) · 6378137
     for (const auto code : {std::uint16_t{3395}, std::uint16_t{3785}, std::uint16_t{3857}}) {
         const HeightMap map = load({3072, 0, 1, code}, kAt60M);
-        EXPECT_NEAR(map.spacingM, 20.0F, 0.001F) << code;
+        expectSpacing(map.spacingM, 20.0F, 20.0F);
         EXPECT_EQ(map.spacingWarning,
                   "its samples stand 40 m apart on its map, of Mercator's projection, and 20 m on "
                   "the ground in its middle; they are drawn 20 m apart");
         EXPECT_EQ(load({3072, 0, 1, code}, 0.0).spacingWarning, "") << "at the equator";
     }
     const HeightMap somewhere = load({3072, 0, 1, 3857}, -1.0);
-    EXPECT_EQ(somewhere.spacingM, 40.0F);
+    EXPECT_EQ(somewhere.spacingM, glm::vec2(40.0F));
     EXPECT_EQ(somewhere.spacingWarning,
               "its coordinates, of Mercator's projection, do not say how far north it lies: its "
               "samples are drawn 40 m apart, as at the equator");
     // Equirectangular: 60 degrees north.
-    EXPECT_EQ(load({3072, 0, 1, 4087}, 6378137.0 * 3.14159265358979 / 3).spacingWarning,
-              "its samples stand 20 m apart from west to east in its middle and 40 m from north to "
-              "south; both are drawn 40 m apart");
+    const HeightMap plate = load({3072, 0, 1, 4087}, 6378137.0 * 3.14159265358979 / 3);
+    expectSpacing(plate.spacingM, 20.0F, 40.0F);
+    EXPECT_EQ(plate.spacingWarning, "");
     const std::string untrue =
         "its projection is not true to scale: its samples are drawn as far apart as on its map";
     EXPECT_EQ(load({3072, 0, 1, 6933}, 0.0).spacingWarning, untrue);
     EXPECT_EQ(load({3075, 0, 1, 7}, 0.0).spacingWarning, untrue);
     EXPECT_EQ(load({3075, 0, 1, 1}, 0.0).spacingWarning, "") << "transverse Mercator";
-    EXPECT_EQ(load({3072, 0, 1, 32633}, kAt60M).spacingM, 40.0F) << "UTM";
+    EXPECT_EQ(load({3072, 0, 1, 32633}, kAt60M).spacingM, glm::vec2(40.0F)) << "UTM";
 }
 
-TEST_F(HeightUnits, DegreesThatAreNoSquaresOnTheGroundAreSaid) {
+TEST_F(HeightUnits, DegreesFromWestToEastAreShorterInTheNorth) {
     const std::vector<std::uint16_t> geographic{1, 1, 0, 1, 1024, 0, 1, 2};
-    const auto warning = [&](std::vector<double> scale, std::vector<double> tiepoint,
-                             std::vector<double> transform, const HeightMapUnits& units = {}) {
+    const auto load = [&](std::vector<double> scale, std::vector<double> tiepoint,
+                          std::vector<double> transform = {}) {
         const fs::path path =
             writeGeoTiff(folder.path() / "a.tif", nullptr, std::move(scale), geographic,
                          std::move(transform), {}, std::move(tiepoint));
-        return loadHeightMap(path, units).spacingWarning;
+        return loadHeightMap(path, {});
     };
-    const std::string said =
-        "its samples stand 15.44 m apart from west to east in its middle and 30.87 m from north to "
-        "south; both are drawn 30.87 m apart";
     const double second = 1.0 / 3600;
     // 60 degrees north: half as long.
-    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 60 + second, 0}, {}), said);
-    EXPECT_EQ(
-        warning({}, {}, {second, 0, 0, 7, 0, -second, 0, 60 + second, 0, 0, 0, 0, 0, 0, 0, 1}),
-        said);
-    EXPECT_EQ(warning({2 * second, second, 0}, {0, 0, 0, 7, 60, 0}, {}), "") << "squares there";
-    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 1, 0}, {}), "") << "near the equator";
-    EXPECT_EQ(warning({second, second, 0}, {0, 0, 0, 7, 60, 0}, {}, {30.0F, 1.0F, {}}), "")
-        << "given";
-    EXPECT_EQ(warning({2 * second, second, 0}, {}, {}).substr(0, 41),
-              "its samples stand 61.74 m apart from west");
+    const HeightMap map = load({second, second, 0}, {0, 0, 0, 7, 60 + second, 0});
+    expectSpacing(map.spacingM, 15.435F, 30.87F);
+    EXPECT_EQ(map.spacingWarning, "");
+    const HeightMap same =
+        load({}, {}, {second, 0, 0, 7, 0, -second, 0, 60 + second, 0, 0, 0, 0, 0, 0, 0, 1});
+    expectSpacing(same.spacingM, 15.435F, 30.87F);
+    expectSpacing(load({2 * second, second, 0}, {0, 0, 0, 7, 60, 0}).spacingM, 30.87F, 30.87F);
+    expectSpacing(load({second, second, 0}, {0, 0, 0, 7, 1, 0}).spacingM, 30.865F, 30.87F);
+    const HeightMap nowhere = load({2 * second, second, 0}, {});
+    expectSpacing(nowhere.spacingM, 61.74F, 30.87F);
+    EXPECT_EQ(nowhere.spacingWarning,
+              "its coordinates, of latitude and longitude, do not say how far north it lies: its "
+              "samples are drawn 61.7405 x 30.8703 m apart, as at the equator");
     const auto latitudeError = [&](double north) {
-        return test::errorText(
-            [&] {
-                warning({1, 1, 0}, {0, 0, 0, 7, north, 0}, {});
-            },
-            folder.path());
+        return test::errorText([&] { load({1, 1, 0}, {0, 0, 0, 7, north, 0}); }, folder.path());
     };
-    EXPECT_EQ(latitudeError(91), "no error");
-    EXPECT_EQ(latitudeError(92), "DIR/a.tif: its middle has the latitude 91; allowed: -90 to 90");
+    EXPECT_EQ(latitudeError(90.5), "no error");
+    EXPECT_EQ(latitudeError(91),
+              "DIR/a.tif: its middle has the latitude 90; allowed: between -90 and 90");
     EXPECT_EQ(latitudeError(-89.5),
-              "DIR/a.tif: its middle has the latitude -90.5; allowed: -90 to 90");
-    // An SRTM tile's name says where it lies.
+              "DIR/a.tif: its middle has the latitude -90.5; allowed: between -90 and 90");
+}
+
+TEST_F(HeightUnits, SrtmTilesSayWhereTheyLieByTheirNames) {
     const std::string tile(std::size_t{2} * 1201 * 1201, '\0');
     const auto ofTile = [&](const char* name) {
-        return loadHeightMap(folder.write(name, tile), {}).spacingWarning;
+        return loadHeightMap(folder.write(name, tile), {});
     };
-    EXPECT_EQ(ofTile("N00E007.hgt"), "");
+    for (const char* name : {"N47W123.hgt", "S48E007.hgt", "n47w123.hgt"}) {
+        const HeightMap map = ofTile(name);  // at 47.5 degrees
+        expectSpacing(map.spacingM, 62.566F, 92.611F);
+        expectSpacing({map.bounds().size().x, map.bounds().size().z}, 75079.0F, 111133.0F);
+        EXPECT_EQ(map.spacingWarning, "") << name;
+    }
     for (const char* name : {"a.hgt", "tile.hgt", "X60E007.hgt", "N90E007.hgt", "S91E007.hgt"}) {
+        const HeightMap map = ofTile(name);
+        EXPECT_EQ(map.spacingM.x, map.spacingM.y);
         EXPECT_EQ(
-            ofTile(name),
+            map.spacingWarning,
             "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
             "far apart from west to east as from north to south");
-    }
-    for (const char* name : {"N60E007.hgt", "S61E007.hgt"}) {
-        EXPECT_EQ(ofTile(name).substr(0, 41), "its samples stand 45.6 m apart from west ") << name;
     }
 }
 
@@ -436,9 +451,9 @@ TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
 TEST_F(HeightUnits, SrtmTilesHaveTheSpacingOfTheirFormat) {
     const fs::path path = folder.write("N00E000.hgt", "");
     fs::resize_file(path, 2884802);
-    EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 92.61F, 0.01F);
+    expectSpacing(loadHeightMap(path, {}).spacingM, 92.61F, 92.61F);
     fs::resize_file(path, 25934402);
-    EXPECT_NEAR(loadHeightMap(path, {}).spacingM, 30.87F, 0.01F);
+    expectSpacing(loadHeightMap(path, {}).spacingM, 30.87F, 30.87F);
 }
 
 /// Two rows of two samples, `bits` each. `describe(png, info)` adds chunks.
@@ -478,16 +493,16 @@ TEST_F(HeightUnits, PngSaysHowLargeItsPixelsAre) {
         return loadHeightMap(path, {});
     };
     const HeightMap map = loaded(PNG_SCALE_METER, "30.5", "3.05e1");
-    EXPECT_EQ(map.spacingM, 30.5F);
+    EXPECT_EQ(map.spacingM, glm::vec2(30.5F));
     EXPECT_TRUE(map.isSpacingOfFile);
     EXPECT_EQ(map.spacingWarning, "");
-    for (const HeightMap& other :
-         {loaded(PNG_SCALE_METER, "30", "60"), loaded(PNG_SCALE_RADIAN, "0.5", "0.5")}) {
-        EXPECT_EQ(other.spacingM, 1.0F);
-        EXPECT_EQ(other.spacingWarning,
-                  "left out: the size of its pixels (chunk sCAL), which is none in metres that is "
-                  "the same along x and y");
-    }
+    const HeightMap uneven = loaded(PNG_SCALE_METER, "30", "60");
+    EXPECT_EQ(uneven.spacingM, glm::vec2(30.0F, 60.0F));
+    EXPECT_EQ(uneven.spacingWarning, "");
+    const HeightMap angles = loaded(PNG_SCALE_RADIAN, "0.5", "0.5");
+    EXPECT_EQ(angles.spacingM, glm::vec2(1.0F));
+    EXPECT_EQ(angles.spacingWarning,
+              "left out: the size of its pixels (chunk sCAL), none in metres");
     EXPECT_EQ(loadHeightMap(path, {30.0F, 1.0F, {}}).spacingWarning, "") << "given";
     writeGrey(path, 4, 0xF3, [](png_structp png, png_infop info) {
         char purpose[] = "height", unit[] = "m", zero[] = "0", one[] = "1";
