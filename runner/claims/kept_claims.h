@@ -1,4 +1,4 @@
-// claims.csv, read back.
+// claims.csv, and what is kept beside it of runs, read back.
 #pragma once
 
 #include <array>
@@ -23,5 +23,16 @@ Verdict verdictAt(const SourceLocation& where, const std::string& name);
 
 /// claims.csv as writeClaims() wrote it. Throws Error with file and line.
 std::vector<ClaimResult> readClaims(const std::filesystem::path& file);
+
+/// By what a table was measured that results/reference keeps.
+struct KeptRun {
+    std::string table, commit, started, deviceClass, device, gl, cpu;
+    long cores;
+    std::vector<std::string> scans;  // scenes that were files
+    std::string command;
+};
+
+/// runs.csv as scripts/keep writes it. Throws Error with file and line.
+std::vector<KeptRun> readKeptRuns(const std::filesystem::path& file);
 
 }  // namespace gfxrepro::claims

@@ -188,16 +188,29 @@ report::ReportRun reportRun(const fs::path& runDir, const run::StoredRun& run,
 }
 
 report::ReportRun keptRun(const fs::path& folder) {
-    if (!fs::exists(folder / "manifest.json") || !fs::exists(folder / "claims.csv")) {
+    const fs::path runs = folder / "runs.csv", claims = folder / "claims.csv";
+    if (!fs::exists(runs) || !fs::exists(claims)) {
         throw Error(folder.string() + ": is neither a run directory (plan.json) nor kept results " +
-                    "(manifest.json and claims.csv)");
+                    "(runs.csv and claims.csv)");
     }
     run::requirePlainFiles(folder);
     report::ReportRun result;
     result.folder = folder;
-    result.manifest = run::readManifest(folder / "manifest.json");
-    result.context = reportContext(result.manifest);
-    result.claims = claims::readClaims(folder / "claims.csv");
+    result.claims = claims::readClaims(claims);
+    std::set<std::string> commits;
+    for (const claims::KeptRun& run : claims::readKeptRuns(runs)) {
+        commits.insert(run.commit);
+        result.manifest = {{"gl", {{"renderer", run.device}, {"version", run.gl}}},
+                           {"cpu", run.cpu},
+                           {"cores", run.cores},
+                           {"started", run.started}};
+        result.context.device = run.device;
+        result.context.deviceClass = run.deviceClass;
+        result.context.command = run.command;
+    }
+    result.context.profile = fs::weakly_canonical(folder).filename().string();
+    result.context.commit = commits.size() == 1 ? *commits.begin()
+                                                : fmt::format("of {} programs", commits.size());
     return result;
 }
 

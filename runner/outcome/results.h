@@ -66,8 +66,8 @@ report::ReportOptions reportOptions(bool embeds = false, report::PicturesDone pr
 report::ReportRun reportRun(const std::filesystem::path& runDir, const run::StoredRun& run,
                             const Results& results);
 
-/// A folder of which only manifest.json and claims.csv are at hand, as results/reference keeps
-/// them: its verdicts stand beside those of whole runs. Throws Error when these are not there.
+/// A folder of results/reference, with runs.csv and claims.csv: its verdicts stand beside those of
+/// whole runs. Of several programs the last is named. Throws Error when these are not there.
 report::ReportRun keptRun(const std::filesystem::path& folder);
 
 }  // namespace gfxrepro::outcome

@@ -1,6 +1,5 @@
 """scripts/measure-reference keeps what is complete, goes on with what is not, and takes what decides most first."""
 
-import csv
 import importlib.machinery
 import importlib.util
 import json
@@ -79,6 +78,10 @@ def wait_until(is_so, what):
     raise AssertionError(what)
 
 
+def rows_of(kept, file, table):
+    return [row for row in script().keeping.rows_of(kept / f"{file}.csv") if row["table"] == table]
+
+
 def lines_of(out):
     return [line.removeprefix("measure-reference: ") for line in out.splitlines() if line.startswith("measure-reference: ")]
 
@@ -89,8 +92,7 @@ with tempfile.TemporaryDirectory() as folder:
     (root / "configs/scenes").mkdir(parents=True)
     mark = "<!-- begin verdicts (by a script) -->\n<!-- end verdicts -->\n"
     (root / "README.md").write_text(mark, encoding="utf-8")
-    (root / "results/README.md").write_text("| folder | on | by |\n| --- | --- | --- |\n| reference/other/quick | x | y |\n\n" + mark,
-                                            encoding="utf-8")
+    (root / "results/README.md").write_text(mark, encoding="utf-8")
     (root / "scripts").mkdir()
     (root / "scripts/update_verdicts").symlink_to(SOURCE / "scripts/update_verdicts")
     quick = table(root, 1, 0, ["ours"])
@@ -101,17 +103,17 @@ with tempfile.TemporaryDirectory() as folder:
     kept = root / "results/reference/mock/paper"
     assert code == 0, (code, out, err)
     assert [line.split(":")[0] for line in lines_of(out)] == ["paper-table-1", "paper-table-2"], out
-    for name in ("paper-table-1", "paper-table-2"):
-        with open(kept / name / "claims.csv", encoding="utf-8", newline="") as rows:
-            assert {row["verdict"] for row in csv.DictReader(rows)} == {"holds"}, name
-        assert list((kept / name / "tables").glob("*.csv")) and list((kept / name / "tables").glob("*.md"))
-        manifest = (kept / name / "manifest.json").read_text(encoding="utf-8")
-        assert folder not in manifest, manifest
-    assert len(json.loads(manifest)["invocations"]) > 1, "table 2 was not gone on with"
-    assert not list(kept.glob("*/records.csv"))
+    for name in ("paper/1", "paper/2"):
+        assert {row["verdict"] for row in rows_of(kept, "claims", name)} == {"holds"}, name
+        assert [cell["measured"] for cell in rows_of(kept, "cells", name)] == ["1", "2", "3"], name
+        line, = rows_of(kept, "runs", name)
+        assert line["command"] == f"gfxrepro reproduce {name.replace('/', '/table-')} --profile paper --device auto", line
+    run, = (root / "runs/reference").glob("*/paper/paper-table-2")
+    assert len(script().json_of(run / "manifest.json")["invocations"]) > 1, "table 2 was not gone on with"
+    assert sorted(file.name for file in kept.iterdir()) == ["cells.csv", "claims.csv", "runs.csv"]
 
     readme = (root / "results/README.md").read_text(encoding="utf-8")
-    assert readme.count("| reference/mock/paper/TABLE | ") == 1, readme
+    assert readme.count("| mock | [paper](reference/mock/paper.md) | 2 | ") == 1, readme
     verdicts = (root / "results/reference/mock/paper.md").read_text(encoding="utf-8")
     assert "**holds** it grows (c0)" in verdicts and "**holds** it grows (c1, " in verdicts, verdicts
 
@@ -144,7 +146,8 @@ with tempfile.TemporaryDirectory() as folder:
     # A run is in the folder of its device, however that was asked for.
     run, = runs.glob("*/full/paper-table-3")
     module = script()
-    assert run.parent.parent.name == module.device_name(module.json_of(run / "manifest.json"), module.clock_ghz()), run
+    keeping = module.keeping
+    assert run.parent.parent.name == keeping.device_name(module.json_of(run / "manifest.json"), keeping.clock_ghz()), run
     began = module.json_of(run / "manifest.json")["started"]
     code, out, err = measure(root, "--profile", "full", "--budget", "0.01s", "--device", "software", "paper/3")
     assert code == 4 and list(runs.glob("*/full/paper-table-3*")) == [run], (code, out, err)
@@ -156,8 +159,8 @@ with tempfile.TemporaryDirectory() as folder:
     assert code == 0 and "set aside as paper-table-3.1" in out, (code, out, err)
     assert "paper-table-3: begun anew: the run that is there is by another build, " in out, out
     kept = root / "results/reference/mock/full"
-    before, after = (module.json_of(file / "manifest.json") for file in (run.with_name("paper-table-3.1"), kept / "paper-table-3"))
-    assert before["started"] == began and before["build_id"] != after["build_id"], (before, after)
+    assert module.json_of(run.with_name("paper-table-3.1") / "manifest.json")["started"] == began
+    assert rows_of(kept, "runs", "paper/3")[0]["started"] != began
 
     # What is kept is not measured again by any build, unless that is asked for; then from the start.
     shutil.rmtree(root / "shaders")
@@ -166,24 +169,24 @@ with tempfile.TemporaryDirectory() as folder:
     assert not run.with_name("paper-table-1.1").exists()
     for _ in range(2):  # by the other build, then by the same
         code, out, err = measure(root, "--profile", "full", "--again", "paper/1")
-        assert code == 0 and "paper-table-1: begun anew: " in out and "paper-table-1: kept in " in out, (code, out, err)
+        assert code == 0 and "paper-table-1: begun anew: " in out and "paper-table-1: kept" in out, (code, out, err)
     assert "begun anew: the run that is there is kept; set aside as paper-table-1.2" in out, out
 
     # That of another device by the same name is none of this one.
-    for file in (kept / "paper-table-1/manifest.json", run.with_name("paper-table-1") / "manifest.json"):
-        manifest = module.json_of(file)
-        manifest["cpu"] = "Another Processor"
-        file.write_text(json.dumps(manifest), encoding="utf-8")
+    lines = (kept / "runs.csv").read_text(encoding="utf-8")
+    manifest = module.json_of(run.with_name("paper-table-1") / "manifest.json")
+    (kept / "runs.csv").write_text(lines.replace(manifest["cpu"], "Another Processor"), encoding="utf-8")
+    (run.with_name("paper-table-1") / "manifest.json").write_text(json.dumps({**manifest, "cpu": "Another Processor"}), encoding="utf-8")
     code, out, err = measure(root, "--profile", "full", "paper/1")
     assert code == 0 and "begun anew: the run that is there is of another device, llvmpipe" in out, (code, out, err)
-    assert module.json_of(kept / "paper-table-1/manifest.json")["cpu"] != "Another Processor"
+    assert rows_of(kept, "runs", "paper/1")[0]["cpu"] == manifest["cpu"]
 
     # What did not finish is not kept, also where whoever starts the script ignores the ends of children.
     table(root, 4, "0, behaviour: throw", ["ours"])
     for options in ({}, {"preexec_fn": lambda: signal.signal(signal.SIGCHLD, signal.SIG_IGN)}):
         code, out, err = measure(root, "--profile", "full", "paper/4", **options)
         assert code == 4 and "paper-table-4: exit code 4: not kept" in out, (code, out, err)
-        assert not (kept / "paper-table-4").exists(), options
+        assert not rows_of(kept, "runs", "paper/4"), options
 
     # Where it cannot be built, and where there is no such program.
     build = root / "scripts/reproduce-paper-tables"
@@ -213,10 +216,13 @@ for renderer, name in (
         ("zink Vulkan 1.3(AMD Radeon Graphics (RADV RENOIR))", "zink-amd-radeon-graphics-radv-renoir"),
         ("D3D12 (NVIDIA GeForce RTX 3080)", "d3d12-nvidia-geforce-rtx-3080")):
     manifest = {"device_class": "gpu", "gl": {"renderer": renderer}}
-    assert script().device_name(manifest, 2.6) == name, (renderer, script().device_name(manifest, 2.6))
-kept = list((SOURCE / "results/reference").glob("*/**/manifest.json"))
+    assert script().keeping.device_name(manifest, 2.6) == name, (renderer, script().keeping.device_name(manifest, 2.6))
+kept = list((SOURCE / "results/reference").glob("*/*/runs.csv"))
 assert kept
 for file in kept:
-    name = file.relative_to(SOURCE / "results/reference").parts[0]
+    name = file.parent.parent.name
     ghz = re.search(r"-([\d.]+)ghz-", name)
-    assert script().device_name(script().json_of(file), float(ghz[1]) if ghz else 2.6) == name, file
+    for line in script().keeping.rows_of(file):
+        gl = {"renderer": line["device"], "mesa_version": line["gl"].rpartition("Mesa ")[2]}
+        manifest = {"device_class": line["class"], "gl": gl, "cpu": line["cpu"], "cores": line["cores"]}
+        assert script().keeping.device_name(manifest, float(ghz[1]) if ghz else 2.6) == name, line

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
 
@@ -28,7 +26,7 @@ struct Kept {
     claims::Verdict verdict;
     std::string deviceClass, profile;
     std::string file;  // with the claim: what a message names
-    claims::SceneFiles scenes = {};
+    std::set<std::string> scans = {};  // its scenes that were files
 };
 
 /// By table and claim.
@@ -37,17 +35,19 @@ std::map<std::pair<std::string, std::string>, std::vector<Kept>> keptVerdicts(
     std::map<std::pair<std::string, std::string>, std::vector<Kept>> kept;
     for (const auto& entry : fs::recursive_directory_iterator(root)) {
         if (entry.path().filename() != "claims.csv") continue;
-        std::ifstream file(entry.path().parent_path() / "manifest.json");
-        const auto manifest = nlohmann::json::parse(file);
-        claims::SceneFiles scenes;
-        for (const auto& [scene, from] : manifest.at("scenes").items()) {
-            scenes[scene::sceneName(scene)] = from.at("sha256") != "";
+        const fs::path folder = entry.path().parent_path();
+        std::map<std::string, claims::KeptRun> runs;
+        for (const claims::KeptRun& run : claims::readKeptRuns(folder / "runs.csv")) {
+            runs[run.table] = run;
         }
         for (const claims::ClaimResult& claim : claims::readClaims(entry.path())) {
+            const claims::KeptRun& run = runs.at(claim.table);
+            std::set<std::string> scans;
+            for (const std::string& scene : run.scans) scans.insert(scene::sceneName(scene));
             kept[{claim.table, claim.id}].push_back(
-                {claim.verdict, manifest.at("device_class"), manifest.at("profile"),
+                {claim.verdict, run.deviceClass, folder.filename(),
                  fs::relative(entry.path(), root).string() + ": " + claim.table + " " + claim.id,
-                 scenes});
+                 scans});
         }
     }
     return kept;
@@ -63,9 +63,10 @@ std::set<std::string> scenesOf(const config::Experiment& experiment) {
 }
 
 bool isOf(const Known& known, const config::Experiment& experiment, const Kept& kept) {
-    if (known.scenes && *known.scenes != claims::sceneClass(scenesOf(experiment), kept.scenes)) {
-        return false;
-    }
+    const std::set<std::string> scenes = scenesOf(experiment);
+    claims::SceneFiles files;
+    for (const std::string& scene : scenes) files[scene] = kept.scans.contains(scene);
+    if (known.scenes && *known.scenes != claims::sceneClass(scenes, files)) return false;
     return known.device.value_or(kept.deviceClass) == kept.deviceClass &&
            known.profile.value_or(kept.profile) == kept.profile;
 }
@@ -148,6 +149,7 @@ TEST(KeptVerdicts, TheFullestQuickRunAsksWhatTheConfigsAsk) {
         const fs::path file = device.path() / "quick" / "claims.csv";
         if (!fs::exists(file)) continue;
         std::vector<claims::ClaimResult> kept = claims::readClaims(file);
+        std::erase_if(kept, [](const auto& claim) { return claim.table.starts_with("sweep/"); });
         if (kept.size() > fullest.size()) fullest = std::move(kept);
     }
     ASSERT_GT(fullest.size(), 300u);
@@ -236,9 +238,9 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     experiment.technique = "t";
     experiment.scene = Node::scalar("s");
     experiment.claims[0].because[0] = {"fails", std::nullopt, std::nullopt, "files", "r", ""};
-    Kept real = fails, generated = fails;
-    real.scenes["s"] = true;
-    generated.scenes["s"] = false;
+    Kept real = fails;
+    const Kept generated = fails;
+    real.scans = {"s"};
     EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {real}}}), testing::IsEmpty());
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {generated}}}).size(), 1u);
     EXPECT_TRUE(isPlain("Ten. 2.5 % of them, at 0.3 m"));

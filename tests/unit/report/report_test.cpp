@@ -669,5 +669,21 @@ TEST_F(Report, RefusesVerdictsThatAreNone) {
               "required,margin,reason,because,rests_on,rows,holds_on,same_as");
 }
 
+TEST_F(Report, RunsThatAreKeptAreReadBack) {
+    const std::string header =
+        "table,commit,started,class,device,gl,cpu,cores,scans,parameters,command\n";
+    const auto file = folder.write(
+        "runs.csv", header + "p/1,0a1b,2026-01-02T03:04:05Z,gpu,\"A, B\",4.5,C,16,s t,,gfxrepro\n");
+    const std::vector<claims::KeptRun> runs = claims::readKeptRuns(file);
+    ASSERT_EQ(runs.size(), 1U);
+    EXPECT_EQ(runs[0].device, "A, B");
+    EXPECT_EQ(runs[0].cores, 16);
+    EXPECT_THAT(runs[0].scans, testing::ElementsAre("s", "t"));
+    EXPECT_EQ(runs[0].command, "gfxrepro");
+    folder.write("runs.csv", header + "p/1,0a1b,,gpu,A,4.5,C,many,,,\n");
+    EXPECT_EQ(test::errorText([&] { claims::readKeptRuns(file); }, folder.path()),
+              "DIR/runs.csv:2: cores: 'many' is no number");
+}
+
 }  // namespace
 }  // namespace gfxrepro::report
