@@ -45,9 +45,9 @@ void readRows(const std::filesystem::path& file, std::span<const std::string_vie
     std::vector<std::string> header, fields;
     reader.next(header);
     if (!std::ranges::equal(header, columns)) {
-        throw Error({file.string(), 1}, fmt::format("the columns are {}; allowed: {}",
-                                                    fmt::join(header, ","),
-                                                    fmt::join(columns, ",")));
+        throw Error({file.string(), 1},
+                    fmt::format("the columns are {}; allowed: {}", fmt::join(header, ","),
+                                fmt::join(columns, ",")));
     }
     while (reader.next(fields)) {
         if (fields.size() != header.size()) {

@@ -107,13 +107,11 @@ studies::VariationResult measureNext(Study& study, const Chosen& selection) {
 void writeStudy(const Study& study, const std::string& keep) {
     const std::string markdown = studies::sensitivityMarkdown(study.experiment(), study.outcomes,
                                                               study.variations, study.left());
-    const std::string csv = studies::sensitivityCsv(study.withLeft(), study.basis);
+    const std::string& table = study.experiment().id;
+    const std::string csv = studies::sensitivityCsv(table, study.withLeft(), study.basis);
     writeFileAtomic(study.folder / "sensitivity.md", markdown);
     writeFileAtomic(study.folder / "sensitivity.csv", csv);
-    if (keep.empty()) return;
-    const fs::path kept = studies::keptFolder(keep, study.plan);
-    writeFileAtomic(kept / (study.experiment().slug() + ".md"), markdown);
-    writeFileAtomic(kept / (study.experiment().slug() + ".csv"), csv);
+    if (!keep.empty()) studies::keepSensitivity(studies::keptFile(keep, study.plan), table, csv);
 }
 
 /// Whether it was measured where times are none, and the study asks for them.
@@ -126,10 +124,10 @@ bool lacksTimes(const studies::VariationResult& outcome, const Study& study) {
 
 /// What `keep` has of the same cases and claims: the runs that are left come after it.
 void takeKept(const std::string& keep, Study& study) {
-    const fs::path file =
-        studies::keptFolder(keep, study.plan) / (study.experiment().slug() + ".csv");
+    const fs::path file = studies::keptFile(keep, study.plan);
     if (!fs::is_regular_file(file)) return;
-    for (studies::VariationResult& kept : studies::readSensitivity(file, study.basis)) {
+    for (studies::VariationResult& kept :
+         studies::readSensitivity(file, study.experiment().id, study.basis)) {
         const auto left =
             study.variations.runs.begin() + static_cast<std::ptrdiff_t>(study.outcomes.size());
         const auto run = std::find_if(left, study.variations.runs.end(), [&](const auto& one) {
@@ -161,14 +159,6 @@ void takeBase(const run::StoredRun& run, Study& study) {
     }
 }
 
-/// A page that says why, unless its times were tried before.
-void writeUntried(const fs::path& kept, const config::Experiment& experiment,
-                  const std::string& basis) {
-    const fs::path tried = kept / (experiment.slug() + ".csv");
-    if (fs::is_regular_file(tried) && !studies::readSensitivity(tried, basis).empty()) return;
-    writeFileAtomic(kept / (experiment.slug() + ".md"), studies::untriedMarkdown(experiment));
-}
-
 std::optional<Study> studyOf(const Context& context, const std::string& file,
                              const SensitivityOptions& options, const std::string& deviceClass,
                              const fs::path& folder) {
@@ -189,10 +179,6 @@ std::optional<Study> studyOf(const Context& context, const std::string& file,
         (experiment.claims.empty() || !options.hasTimes)) {
         tell("{}: left out, {}\n", experiment.id,
              experiment.claims.empty() ? "it has no claims" : "all its claims are of times");
-        if (!experiment.claims.empty() && !options.keep.empty()) {
-            writeUntried(studies::keptFolder(options.keep, study.plan), experiment,
-                         studies::basisOf(study.plan, experiment));
-        }
         return std::nullopt;
     }
     if (isTimed && !options.hasTimes) study.sets = kOnceForQuality;

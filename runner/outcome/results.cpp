@@ -209,8 +209,8 @@ report::ReportRun keptRun(const fs::path& folder) {
         result.context.command = run.command;
     }
     result.context.profile = fs::weakly_canonical(folder).filename().string();
-    result.context.commit = commits.size() == 1 ? *commits.begin()
-                                                : fmt::format("of {} programs", commits.size());
+    result.context.commit =
+        commits.size() == 1 ? *commits.begin() : fmt::format("of {} programs", commits.size());
     return result;
 }
 

@@ -299,8 +299,9 @@ namespace {
 
 using report::escapeMarkdown;
 
+constexpr std::size_t kColumns = 10;
 constexpr const char* kHeader =
-    "basis,assumption,value,claim,verdict,measured,required,margin,error\n";
+    "table,basis,assumption,value,claim,verdict,measured,required,margin,error\n";
 
 std::string runsMarkdown(const std::vector<VariationResult>& outcomes) {
     const std::vector<ClaimResult>& claims = outcomes.front().claims;
@@ -356,19 +357,14 @@ std::string sensitivityMarkdown(const config::Experiment& experiment,
     return text;
 }
 
-std::string untriedMarkdown(const config::Experiment& experiment) {
-    return fmt::format(
-        "# Sensitivity of {}\n\n{}\n\nNot tried: all its claims are of times, which vary with the "
-        "machine beside the assumptions.\n",
-        escapeMarkdown(experiment.id), escapeMarkdown(experiment.title));
-}
-
-std::string sensitivityCsv(const std::vector<VariationResult>& outcomes, const std::string& basis) {
+std::string sensitivityCsv(const std::string& table, const std::vector<VariationResult>& outcomes,
+                           const std::string& basis) {
     std::string text = kHeader;
     for (const VariationResult& outcome : outcomes) {
         const auto row = [&](const ClaimResult* claim) {
             records::CsvRow line(text);
-            line.text(basis).text(outcome.variation.assumption).text(outcome.variation.value);
+            line.text(table).text(basis);
+            line.text(outcome.variation.assumption).text(outcome.variation.value);
             line.text(claim ? claim->id : "");
             line.text(claim ? claims::verdictName(claim->verdict) : "");
             line.text(claim ? claim->measured : "").text(claim ? claim->required : "");
@@ -385,19 +381,35 @@ std::string sensitivityCsv(const std::vector<VariationResult>& outcomes, const s
     return text;
 }
 
-std::vector<VariationResult> readSensitivity(const fs::path& file, const std::string& basis) {
-    enum Column { Basis, Name, Value, Claim, Word, Measured, Required, Margin, Problem, Count };
+namespace {
+
+/// Calls `take(row, where, bytes)` for each row of what sensitivityCsv() wrote, without the header.
+template <class Take>
+void readRows(const fs::path& file, const Take& take) {
     const std::string text = readFile(file);
     records::CsvReader reader(text, file.string());
     std::vector<std::string> fields;
-    std::vector<VariationResult> outcomes;
     reader.next(fields);  // the header
+    std::size_t begin = reader.rowEnd();
     while (reader.next(fields)) {
-        if (fields.size() != Count) {
+        if (fields.size() != kColumns) {
             throw Error(reader.location(),
-                        fmt::format("expected {} columns, found {}", int{Count}, fields.size()));
+                        fmt::format("expected {} columns, found {}", kColumns, fields.size()));
         }
-        if (!basis.empty() && fields[Basis] != basis) return {};
+        take(fields, reader.location(), text.substr(begin, reader.rowEnd() - begin));
+        begin = reader.rowEnd();
+    }
+}
+
+}  // namespace
+
+std::vector<VariationResult> readSensitivity(const fs::path& file, const std::string& table,
+                                             const std::string& basis) {
+    enum Column { Table, Basis, Name, Value, Claim, Word, Measured, Required, Margin, Problem };
+    std::vector<VariationResult> outcomes;
+    readRows(file, [&](const std::vector<std::string>& fields, const SourceLocation& where,
+                       const std::string&) {
+        if (fields[Table] != table || (!basis.empty() && fields[Basis] != basis)) return;
         const bool isNew = outcomes.empty() ||
                            outcomes.back().variation.assumption != fields[Name] ||
                            outcomes.back().variation.value != fields[Value];
@@ -406,15 +418,28 @@ std::vector<VariationResult> readSensitivity(const fs::path& file, const std::st
                                 {},
                                 fields[Problem]});
         }
-        if (fields[Claim].empty()) continue;
+        if (fields[Claim].empty()) return;
         ClaimResult& claim = outcomes.back().claims.emplace_back();
         claim.id = fields[Claim];
-        claim.verdict = claims::verdictAt(reader.location(), fields[Word]);
+        claim.verdict = claims::verdictAt(where, fields[Word]);
         claim.measured = fields[Measured];
         claim.required = fields[Required];
         claim.distance = parseDouble(fields[Margin]);
-    }
+    });
     return outcomes;
+}
+
+void keepSensitivity(const fs::path& file, const std::string& table, const std::string& csv) {
+    std::map<std::string, std::string> rows;  // of each table, as they stand there
+    if (fs::is_regular_file(file)) {
+        readRows(file, [&](const std::vector<std::string>& fields, const SourceLocation&,
+                           const std::string& row) { rows[fields.front()] += row; });
+    }
+    const std::string header = kHeader;
+    rows[table] = csv.substr(header.size());
+    std::string text = header;
+    for (const auto& [name, ofTable] : rows) text += ofTable;
+    writeFileAtomic(file, text);
 }
 
 std::string basisOf(const run::Plan& plan, const config::Experiment& experiment) {
@@ -445,61 +470,48 @@ std::string basisOf(const run::Plan& plan, const config::Experiment& experiment)
     return sha256(content.dump()).substr(0, 12);
 }
 
-fs::path keptFolder(const fs::path& folder, const run::Plan& plan) {
-    return folder / plan.deviceClass / plan.profile;
+fs::path keptFile(const fs::path& folder, const run::Plan& plan) {
+    return folder / fmt::format("{}-{}.csv", plan.deviceClass, plan.profile);
 }
 
 std::string sensitivityIndex(const fs::path& folder, const std::string& command) {
     std::string text =
         "# sensitivity\nOn which assumptions the verdicts rest: each assumption of a table took "
-        "the "
-        "values of its range, alone, and the claims were judged anew. `none` has the claims that "
-        "no "
-        "assumption tried turned.\nWritten by `gfxrepro sensitivity … --keep`, last by\n\n    " +
+        "the values of its range, alone, and the claims were judged anew. `none` has the claims "
+        "that no assumption tried turned. A table that is not here was not tried: all its claims "
+        "are of times.\nWritten by `gfxrepro sensitivity … --keep`, last by\n\n    " +
         command + "\n";
     std::set<fs::path> files;
     for (const fs::directory_entry& file : entriesBelow(folder)) {
-        const bool isPage = file.path().extension() == ".md" && file.path().parent_path() != folder;
-        if (isPage) files.insert(fs::path(file.path()).replace_extension(".csv"));
+        if (file.path().extension() == ".csv") files.insert(file.path());
     }
-    const auto link = [&](const fs::path& file) {
-        const fs::path page = fs::path(file).replace_extension(".md").lexically_relative(folder);
-        return fmt::format("[{}]({})", file.stem().string(), page.generic_string());
-    };
-    fs::path last;
-    std::vector<std::string> untried;
-    const auto sayUntried = [&] {
-        if (!untried.empty())
-            text += fmt::format("\nNot tried, each says why: {}.\n", joined(untried));
-        untried.clear();
-    };
     for (const fs::path& file : files) {
-        const std::vector<VariationResult> outcomes =
-            fs::is_regular_file(file) ? readSensitivity(file) : std::vector<VariationResult>{};
-        if (file.parent_path() != last) {
-            sayUntried();
-            last = file.parent_path();
-            text += fmt::format("\n## {}\n| table | none | rests on |\n| --- | --- | --- |\n",
-                                last.lexically_relative(folder).generic_string());
-        }
-        std::vector<std::string> firm, resting;
-        const std::size_t claims = outcomes.empty() ? 0 : outcomes.front().claims.size();
-        for (std::size_t i = 0; i < claims; ++i) {
-            const std::string& id = outcomes.front().claims[i].id;
-            const std::string rests = restsOn(outcomes, i);
-            if (rests.starts_with("none")) firm.push_back(id);
-            if (!rests.starts_with("none") && rests != "not tried") {
-                resting.push_back(fmt::format("{}: {}", id, rests));
+        const std::string name = file.stem().string();
+        text += fmt::format(
+            "\n## [{0}]({0}.csv)\n| table | none | rests on |\n| --- | --- | --- |\n", name);
+        std::vector<std::string> tables;  // by the order of their rows
+        readRows(file, [&](const std::vector<std::string>& fields, const SourceLocation&,
+                           const std::string&) {
+            if (tables.empty() || tables.back() != fields.front()) tables.push_back(fields.front());
+        });
+        for (const std::string& table : tables) {
+            const std::vector<VariationResult> outcomes = readSensitivity(file, table);
+            std::vector<std::string> firm, resting;
+            for (std::size_t i = 0; i < outcomes.front().claims.size(); ++i) {
+                const std::string& id = outcomes.front().claims[i].id;
+                const std::string rests = restsOn(outcomes, i);
+                if (rests == "not tried") continue;
+                if (rests.starts_with("none")) {
+                    firm.push_back(id);
+                } else {
+                    resting.push_back(fmt::format("{}: {}", id, rests));
+                }
             }
+            text +=
+                fmt::format("| {} | {} | {} |\n", escapeMarkdown(table),
+                            escapeMarkdown(joined(firm)), escapeMarkdown(joined(resting, "; ")));
         }
-        if (firm.empty() && resting.empty()) {
-            untried.push_back(link(file));
-            continue;
-        }
-        text += fmt::format("| {} | {} | {} |\n", link(file), escapeMarkdown(joined(firm)),
-                            escapeMarkdown(joined(resting, "; ")));
     }
-    sayUntried();
     return text;
 }
 
@@ -507,11 +519,11 @@ claims::KeptSensitivity keptSensitivity(const run::Plan& plan,
                                         const std::vector<config::Experiment>& experiments,
                                         const fs::path& folder) {
     claims::KeptSensitivity kept;
+    const fs::path file = keptFile(folder, plan);
+    if (!fs::is_regular_file(file)) return kept;
     for (const config::Experiment& experiment : experiments) {
-        const fs::path file = keptFolder(folder, plan) / (experiment.slug() + ".csv");
-        if (!fs::is_regular_file(file)) continue;
         const std::vector<VariationResult> outcomes =
-            readSensitivity(file, basisOf(plan, experiment));
+            readSensitivity(file, experiment.id, basisOf(plan, experiment));
         if (outcomes.empty()) continue;
         const std::vector<ClaimResult>& claims = outcomes.front().claims;
         for (std::size_t i = 0; i < claims.size(); ++i) {

@@ -65,25 +65,29 @@ std::string restsOn(const std::vector<VariationResult>& outcomes, std::size_t cl
 std::string sensitivityMarkdown(const config::Experiment& experiment,
                                 const std::vector<VariationResult>& outcomes,
                                 const Variations& variations, std::size_t left = 0);
-/// Of a table whose claims are all of times: a page that says so.
-std::string untriedMarkdown(const config::Experiment& experiment);
-/// basis,assumption,value,claim,verdict,measured,required,margin,error: a row a claim and run.
-std::string sensitivityCsv(const std::vector<VariationResult>& outcomes, const std::string& basis);
-/// What sensitivityCsv() wrote; nothing when it is of another basis (an empty one is any). Throws
-/// Error with file and line.
+/// table,basis,assumption,value,claim,verdict,measured,required,margin,error: a row a claim and
+/// run.
+std::string sensitivityCsv(const std::string& table, const std::vector<VariationResult>& outcomes,
+                           const std::string& basis);
+/// What sensitivityCsv() wrote of a table; nothing when it is of another basis (an empty one is
+/// any). Throws Error with file and line.
 std::vector<VariationResult> readSensitivity(const std::filesystem::path& file,
+                                             const std::string& table,
                                              const std::string& basis = "");
+/// Puts what sensitivityCsv() says of a table in the place of what the file has of it.
+void keepSensitivity(const std::filesystem::path& file, const std::string& table,
+                     const std::string& csv);
 
 /// Identity of what an experiment's verdicts follow from, but for the program: its cases with their
 /// scenes and parameters, layout, printed values, what its claims ask, the class of the device.
 /// Results of another basis are stale.
 std::string basisOf(const run::Plan& plan, const config::Experiment& experiment);
 
-/// Where results of a plan's experiments are kept below `folder`: <device class>/<profile>.
-std::filesystem::path keptFolder(const std::filesystem::path& folder, const run::Plan& plan);
+/// Where results of a plan's experiments are kept in `folder`: <device class>-<profile>.csv.
+std::filesystem::path keptFile(const std::filesystem::path& folder, const run::Plan& plan);
 
-/// The README of a folder of kept results: what each verdict rests on, a line a table, and the
-/// tables of which nothing was tried; `command` made the last of them.
+/// The README of a folder of kept results: what each verdict rests on, a line a table;
+/// `command` made the last of them.
 std::string sensitivityIndex(const std::filesystem::path& folder, const std::string& command);
 
 /// What kept results say of the claims of a plan's experiments, as the plan or another config has

@@ -25,7 +25,7 @@ const fs::path kSource = GFXREPRO_SOURCE_DIR;
 struct Kept {
     claims::Verdict verdict;
     std::string deviceClass, profile;
-    std::string file;  // with the claim: what a message names
+    std::string file;                  // with the claim: what a message names
     std::set<std::string> scans = {};  // its scenes that were files
 };
 

@@ -189,8 +189,8 @@ TEST_F(Sensitivity, SaysOfHowManyAssumptionsSomeWereTried) {
     EXPECT_EQ(restsOn(withLeft({made[0], outcome("kind", "b", Verdict::Fails)}, variations, 2), 0),
               "none (1 of 2 tried)");
     EXPECT_EQ(restsOn(withLeft({made[0]}, variations, 3), 0), "not tried");
-    const auto file = folder.write("p-1.csv", sensitivityCsv(all, "abc"));
-    EXPECT_EQ(restsOn(readSensitivity(file, "abc"), 0), "kind (1 of 2 tried)");
+    const auto file = folder.write("p-1.csv", sensitivityCsv("p/1", all, "abc"));
+    EXPECT_EQ(restsOn(readSensitivity(file, "p/1", "abc"), 0), "kind (1 of 2 tried)");
 }
 
 TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
@@ -200,11 +200,11 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     std::vector<VariationResult> outcomes{
         outcome("", "", Verdict::Holds), outcome("kind", "b", Verdict::Fails), failed("bias", "5")};
     outcomes[1].claims[0].distance = -0.25;
-    const std::string csv = sensitivityCsv(outcomes, "abc");
-    EXPECT_EQ(
-        csv,
-        "basis,assumption,value,claim,verdict,measured,required,margin,error\n"
-        "abc,,,C,holds,,,,\nabc,kind,b,C,fails,,,-0.25,\nabc,bias,5,,,,,,exit code 2: bias is 5\n");
+    const std::string csv = sensitivityCsv("p/1", outcomes, "abc");
+    EXPECT_EQ(csv,
+              "table,basis,assumption,value,claim,verdict,measured,required,margin,error\n"
+              "p/1,abc,,,C,holds,,,,\np/1,abc,kind,b,C,fails,,,-0.25,\n"
+              "p/1,abc,bias,5,,,,,,exit code 2: bias is 5\n");
     const std::string text =
         sensitivityMarkdown(experiment, outcomes, {{}, {{"view", "it has no range"}}}, 2);
     for (const char* line :
@@ -216,15 +216,33 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     }
 
     const auto file = folder.write("p-1.csv", csv);
-    const std::vector<VariationResult> read = readSensitivity(file, "abc");
+    const std::vector<VariationResult> read = readSensitivity(file, "p/1", "abc");
     ASSERT_EQ(read.size(), 3U);
-    EXPECT_EQ(sensitivityCsv(read, "abc"), csv);
+    EXPECT_EQ(sensitivityCsv("p/1", read, "abc"), csv);
     EXPECT_EQ(restsOn(read, 0), "kind (1 of 2 tried)");
-    EXPECT_TRUE(readSensitivity(file, "of another config").empty());
-    folder.write("p-1.csv", csv + "abc,kind,c,C,perhaps,,,,\n");
-    EXPECT_EQ(test::errorText([&] { readSensitivity(file, "abc"); }, folder.path()),
+    EXPECT_TRUE(readSensitivity(file, "p/1", "of another config").empty());
+    folder.write("p-1.csv", csv + "p/1,abc,kind,c,C,perhaps,,,,\n");
+    EXPECT_EQ(test::errorText([&] { readSensitivity(file, "p/1", "abc"); }, folder.path()),
               "DIR/p-1.csv:5: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
               "unmeasured)");
+}
+
+TEST_F(Sensitivity, ATableTakesTheKeptPlaceOfItselfAlone) {
+    const auto file = folder.path() / "software-quick.csv";
+    const auto csv = [&](const char* table, const char* value) {
+        return sensitivityCsv(table, {outcome("", "", Verdict::Holds), failed("bias", value)}, "a");
+    };
+    keepSensitivity(file, "p/2", csv("p/2", "1"));
+    keepSensitivity(file, "p/1", csv("p/1", "2\n\"3\""));  // a row of several lines
+    const std::string both = readFile(file);
+    EXPECT_EQ(both,
+              csv("p/1", "2\n\"3\"") + csv("p/2", "1").substr(csv("p/2", "1").find('\n') + 1));
+    keepSensitivity(file, "p/2", csv("p/2", "4"));
+    EXPECT_EQ(readSensitivity(file, "p/2").back().variation.value, "4");
+    EXPECT_EQ(readSensitivity(file, "p/1").back().variation.value, "2\n\"3\"");
+    keepSensitivity(file, "p/2", csv("p/2", "1"));
+    EXPECT_EQ(readFile(file), both);
+    EXPECT_TRUE(readSensitivity(file, "p/3").empty());
 }
 
 /// An experiment of one claim, and its plan of one case.
@@ -243,9 +261,10 @@ run::Plan planWith(const std::string& claim, int number) {
 
 TEST_F(Sensitivity, KeptResultsOfAnotherCaseOrClaimAreStale) {
     const run::Plan plan = planWith("{says: a, bound: n, at_least: 1}", 3);
-    folder.write("software/quick/p-1.csv", sensitivityCsv({outcome("", "", Verdict::Holds),
-                                                           outcome("bias", "5", Verdict::Fails)},
-                                                          basisOf(plan, plan.experiments.front())));
+    folder.write("software-quick.csv",
+                 sensitivityCsv(
+                     "p/1", {outcome("", "", Verdict::Holds), outcome("bias", "5", Verdict::Fails)},
+                     basisOf(plan, plan.experiments.front())));
     const auto kept = [&](const run::Plan& of) {
         return keptSensitivity(of, of.experiments, folder.path());
     };
