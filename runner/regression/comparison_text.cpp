@@ -72,14 +72,13 @@ std::string markdownRow(const Difference& difference, const std::string& name) {
                        verdict);
 }
 
-/// The names of tests: titles, and where several series have one, what else they differ in.
+/// A name each: titles, with the unit where several have one.
 std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) {
+    std::vector<std::string> names = titlesOf(keys);
     std::map<std::string, int> counts;
-    for (const SeriesKey* key : keys) ++counts[key->title()];
-    std::vector<std::string> names;
-    for (const SeriesKey* key : keys) {
-        names.push_back(key->title());
-        if (counts[names.back()] > 1) names.back() += fmt::format(" {} {}", key->unit, key->params);
+    for (const std::string& name : names) ++counts[name];
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (counts[names[i]] > 1) names[i] += " " + keys[i]->unit;
     }
     return names;
 }
@@ -155,20 +154,21 @@ std::string junitXml(const Comparison& comparison) {
 
 std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
     nlohmann::ordered_json entries = nlohmann::ordered_json::array();
-    for (const Difference& difference : differences) {
+    const std::vector<std::string> names = uniqueNames(keysOf(differences));
+    for (std::size_t i = 0; i < differences.size(); ++i) {
+        const Difference& difference = differences[i];
         if (difference.isAlarm() && difference.picture) {
             entries.push_back(
-                {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
+                {{"name", names[i]},
                  {"unit", "FLIP"},
                  {"value", difference.picture->flip},
                  {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
         }
         if (!difference.key.isTime() || !(difference.after > 0.0)) continue;
-        entries.push_back(
-            {{"name", fmt::format("{} {}", difference.key.title(), difference.key.params)},
-             {"unit", difference.key.unit},
-             {"value", difference.after},
-             {"range", fmt::format("× {}", ratioText(difference))}});
+        entries.push_back({{"name", names[i]},
+                           {"unit", difference.key.unit},
+                           {"value", difference.after},
+                           {"range", fmt::format("× {}", ratioText(difference))}});
     }
     return entries.dump(2) + "\n";
 }
