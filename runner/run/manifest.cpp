@@ -228,9 +228,10 @@ std::set<ProgramUse> programsOf(const Json& manifest) {
 std::string machineName(const Json& manifest) {
     const Json& gl = manifest.at("gl");
     if (manifest.contains("imported")) return "imported: " + gl.at("renderer").get<std::string>();
+    const std::string version = gl.at("version").get<std::string>();  // empty without a device
     return manifest.at("cpu").get<std::string>() + ", " +
            std::to_string(manifest.at("cores").get<long>()) + " cores, " +
-           gl.at("renderer").get<std::string>() + ", " + gl.at("version").get<std::string>();
+           gl.at("renderer").get<std::string>() + (version.empty() ? "" : ", " + version);
 }
 
 std::string timingMachine(const Json& manifest, const std::string& experiment) {
