@@ -239,11 +239,15 @@ void addCluster(CLI::App& app, const Context& context, Options& o) {
 void addCompare(CLI::App& app, CompareOptions& options, std::function<int()>& command) {
     CLI::App* compareApp =
         app.add_subcommand("compare", "times, values and pictures of two runs or two builds");
-    compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… with --binaries")
+    compareApp->add_option("inputs", options.inputs, "A B; or OLD NEW CONFIG… by turns")
         ->required()
         ->option_text("RUN");
-    compareApp->add_flag("--binaries", options.areBinaries,
-                         "OLD and NEW are programs, which take turns to measure the configs");
+    CLI::Option* binaries = compareApp->add_flag(
+        "--binaries", options.areBinaries, "OLD and NEW are builds of gfxrepro, which take turns");
+    compareApp
+        ->add_flag("--programs", options.arePrograms,
+                   "OLD and NEW are folders of two builds of your program, which take turns")
+        ->excludes(binaries);
     compareApp
         ->add_option("--rounds", options.rounds,
                      "rounds of each program (default 20); up to five times as many while "

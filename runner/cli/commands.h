@@ -90,10 +90,12 @@ struct DescribeOptions {
     std::string assets;
 };
 
-/// Two run directories; or two programs and the configs that they measure by turns.
+/// Two run directories; or two programs and the configs that they measure by turns; or the folders
+/// of two builds of the program that the configs measure.
 struct CompareOptions {
     std::vector<std::string> inputs;
     bool areBinaries = false;
+    bool arePrograms = false;
     int rounds = 20;  // of each program a look; up to five looks
     std::string profile = "quick";
     std::string device = "auto";

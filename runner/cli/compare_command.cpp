@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -116,7 +117,8 @@ std::vector<Difference> comparePictures(const Measured& older, const Measured& n
                                         const fs::path& folder) {
     return regression::comparePictures(
         older.pictures, newer.pictures,
-        {.isOneBuild = older.buildId == newer.buildId, .folder = folder});
+        {.isOneBuild = older.buildId == newer.buildId && older.programs == newer.programs,
+         .folder = folder});
 }
 
 /// Runs a program to its end; its output is shown when it fails. Exit code 4 (a case did not
@@ -130,11 +132,94 @@ void runProgram(const std::vector<std::string>& arguments) {
     throw Error(problem);
 }
 
+/// Whether a folder has the file, or bin/ in it.
+bool hasProgram(const fs::path& folder, const std::string& name) {
+    return fs::is_regular_file(folder / name) || fs::is_regular_file(folder / "bin" / name);
+}
+
+/// Whether {here} must be the folder of a build: the command calls by its name alone nothing that
+/// is there. Throws Error where it has not what the command names.
+bool isNamedFromHere(const config::ExternalProgram& program, const std::string& file,
+                     const fs::path& folder) {
+    const std::string& called = program.command.front();
+    if (called.find('/') == std::string::npos && hasProgram(folder, called)) return false;
+    const std::string here = fmt::format("{{{}}}/", config::placeholder::kHere);
+    bool isNamed = false;
+    for (const std::string& word : program.command) {
+        const std::size_t at = word.find(here);
+        if (at == std::string::npos) continue;
+        const std::string name = word.substr(at + here.size());
+        const bool isThere = fs::is_regular_file(folder / name);
+        isNamed = isNamed || isThere;
+        if (isThere || !fs::is_regular_file(fs::path(program.here) / name)) continue;
+        throw Error(fmt::format("{} has no {}, which the command of {} names from {} on",
+                                folder.string(), name, file, here));
+    }
+    if (isNamed) return true;
+    throw Error(
+        fmt::format("{} has no {}, which {} calls; a build's program is called by its name "
+                    "alone, and lies in its folder or in bin/ there, or by {}",
+                    folder.string(), called, file, here));
+}
+
+/// The beginning of a command line that measures the configs' programs as a build's folder has
+/// them. Rounds are the processes; without a seed two of one tell whether they differ.
+std::vector<std::string> runOfBuild(const CompareOptions& options, const fs::path& folder) {
+    if (!fs::is_directory(folder)) throw Error(folder.string() + " is no folder");
+    const std::vector<std::string> names(options.inputs.begin() + 2, options.inputs.end());
+    std::vector<std::string> calledByName, namedFromHere;
+    bool areSeeded = true;
+    for (const config::Experiment& experiment :
+         loadExperiments(requestOf({}, findPaperConfigs(names)), options.profile)) {
+        const Node& node = config::programOf(experiment);
+        const std::string file = experiment.file.string();
+        if (node.isNull()) {
+            throw Error(file + ": has no 'program', of which two builds could be compared");
+        }
+        const config::ExternalProgram program = config::readProgram(node);
+        areSeeded = areSeeded && program.uses(config::placeholder::kSeed);
+        (isNamedFromHere(program, file, folder) ? namedFromHere : calledByName).push_back(file);
+    }
+    if (!calledByName.empty() && !namedFromHere.empty()) {
+        throw Error(
+            fmt::format("{} calls its program by name, and {} from {{{}}} on: compare them "
+                        "one by one",
+                        calledByName.front(), namedFromHere.front(), config::placeholder::kHere));
+    }
+    const char* path = std::getenv("PATH");
+    std::vector<std::string> arguments = {
+        "/usr/bin/env",
+        fmt::format("PATH={0}:{0}/bin:{1}", folder.string(), path ? path : "/usr/bin:/bin"),
+        fs::read_symlink("/proc/self/exe").string(),
+        "run",
+        "--quiet",
+        "--set",
+        fmt::format("measure.processes={}", areSeeded ? 1 : 2)};
+    if (!namedFromHere.empty()) {
+        arguments.insert(arguments.end(), {"--set", "program.here=" + folder.string()});
+    }
+    return arguments;
+}
+
+/// What a history calls a build: hash and version of the first program of its folder.
+std::string buildName(const Measured& measured, const fs::path& folder) {
+    for (const auto& [file, name] : measured.programs) {
+        if (hasProgram(folder, file)) return name;
+    }
+    return measured.commit;
+}
+
 /// Alternating rounds of both programs, in fresh processes: OLD NEW, NEW OLD, OLD NEW, …
 class Turns {
   public:
     Turns(const CompareOptions& options, fs::path folder)
-        : options_(options), folder_(std::move(folder)) {}
+        : options_(options), folder_(std::move(folder)) {
+        for (std::size_t side = 0; side < 2; ++side) {
+            const fs::path build = fs::absolute(options.inputs[side]).lexically_normal();
+            starts_[side] = options.arePrograms ? runOfBuild(options, build)
+                                                : std::vector<std::string>{build, "run", "--quiet"};
+        }
+    }
 
     /// Measures until all is decided, and alarms once more.
     std::vector<Difference> compare() {
@@ -181,8 +266,7 @@ class Turns {
     Measured take(std::size_t side, const std::set<std::string>& tables) const {
         const std::string dir =
             folder_ / fmt::format("{}-{:02}", side == 0 ? "old" : "new", roundCount_);
-        std::vector<std::string> arguments = {fs::absolute(options_.inputs[side]), "run",
-                                              "--quiet"};
+        std::vector<std::string> arguments = starts_[side];
         for (const auto& [option, value] :
              {std::pair{"--out", dir}, std::pair{"--profile", options_.profile},
               std::pair{"--device", options_.device}, std::pair{"--assets", options_.assets}}) {
@@ -198,6 +282,7 @@ class Turns {
 
     const CompareOptions& options_;
     fs::path folder_;
+    std::vector<std::string> starts_[2];
     int roundCount_ = 0;
     regression::CaseTexts failures_;
     std::map<std::string, std::string> configs_;  // also of tables that one side has lost
@@ -212,6 +297,21 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
     return regression::findSteps(regression::readHistory(path, measured.machine));
 }
 
+/// What times of two runs cannot say, where they leave one undecided, and what would say it.
+void noteApart(const std::vector<Difference>& differences, bool isOfProgram,
+               std::vector<std::string>& notes) {
+    const bool isUndecided = std::ranges::any_of(differences, [](const Difference& one) {
+        return one.key.isTime() && one.verdict == regression::SeriesVerdict::CannotTell;
+    });
+    if (!isUndecided) return;
+    const regression::Rules rules;
+    notes.push_back(fmt::format(
+        "of two runs only times that differ by more than × {:.1f} are told, as a machine drifts "
+        "between them; by turns {:.0f} % are: gfxrepro compare {}",
+        1.0 + rules.driftApart, 100.0 * rules.effectFloor,
+        isOfProgram ? "--programs OLD_DIR NEW_DIR CONFIG" : "--binaries OLD NEW CONFIG"));
+}
+
 /// What two runs say that were measured for themselves. Where the older has no pictures (kept
 /// results do not have), none is compared: a note tells it instead.
 std::vector<Difference> compareRuns(const Measured& older, const Measured& newer,
@@ -223,6 +323,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     regression::noteOnce(differences, older.once, newer.once);
+    noteApart(differences, !newer.programs.empty(), notes);
     for (const auto& [file, now] : newer.programs) {
         const auto then = older.programs.find(file);
         if (then == older.programs.end() || then->second == now) continue;
@@ -296,21 +397,23 @@ int exitCodeOf(const regression::Comparison& comparison, const regression::CaseT
 }  // namespace
 
 int compare(const CompareOptions& options) {
-    const std::size_t fewest = options.areBinaries ? 3 : 2;
-    if (options.inputs.size() < fewest || (!options.areBinaries && options.inputs.size() > 2)) {
-        throw UsageError(options.areBinaries ? "compare: --binaries needs OLD NEW CONFIG…"
-                                             : "compare: needs two run directories");
+    const bool isByTurns = options.areBinaries || options.arePrograms;
+    if (options.inputs.size() < (isByTurns ? 3 : 2) || (!isByTurns && options.inputs.size() > 2)) {
+        throw UsageError(options.areBinaries   ? "compare: --binaries needs OLD NEW CONFIG…"
+                         : options.arePrograms ? "compare: --programs needs OLD_DIR NEW_DIR CONFIG…"
+                                               : "compare: needs two run directories");
     }
     const fs::path folder =
         options.out.empty() ? run::defaultRunPath("compare") : fs::path(options.out);
     regression::Comparison comparison;
     Measured newer;
-    if (options.areBinaries) {
-        tellDevice(options.device.empty() ? "auto" : options.device);
+    if (isByTurns) {
+        if (options.areBinaries) tellDevice(options.device.empty() ? "auto" : options.device);
         Turns turns(options, folder);
         comparison.differences = turns.compare();
         newer = turns.newer();
         newer.failures = turns.failures();
+        if (options.arePrograms) newer.commit = buildName(newer, options.inputs[1]);
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
