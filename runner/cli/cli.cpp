@@ -349,7 +349,8 @@ int runCommand(int argc, const char* const* argv,
     Context context{techniques, generators, "gfxrepro", std::chrono::steady_clock::now()};
     for (int i = 1; i < argc; ++i) context.commandLine += ' ' + shellQuoted(argv[i]);
     Options options;
-    CLI::App app("Measures the tables of rendering papers again.", "gfxrepro");
+    CLI::App app("Measures the tables of rendering papers again, and your own experiments.",
+                 "gfxrepro");
     app.require_subcommand(0, 1);  // what follows a command is no other one: describe scene
     app.set_help_flag("-h,--help", "this text");
     app.set_version_flag("--version", fmt::format("gfxrepro {} (commit {})", GFXREPRO_VERSION,
