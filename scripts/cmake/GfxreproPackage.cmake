@@ -25,7 +25,7 @@ add_completion(fish fish/vendor_completions.d gfxrepro.fish)
 add_completion(zsh zsh/vendor-completions _gfxrepro)
 add_custom_target(gfxrepro_share ALL DEPENDS ${made})
 
-install(PROGRAMS "${CMAKE_SOURCE_DIR}/scripts/fetch-assets"
+install(PROGRAMS "${CMAKE_SOURCE_DIR}/scripts/fetch-assets" "${CMAKE_SOURCE_DIR}/scripts/nightly"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/scripts")
 # Of the kept results, what a report reads.
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/results/sensitivity" "${CMAKE_SOURCE_DIR}/results/calibration"

@@ -26,7 +26,7 @@ installed check "$configs/smoke/template.yaml" "$configs/zju2005/table-2.1.yaml"
 installed run "$configs/smoke/template.yaml" --device software --quiet --out "$D/run"
 installed table "$D/run"
 for file in bin/gfxrepro share/gfxrepro/shaders/template share/gfxrepro/configs/schema/experiment.json \
-    share/gfxrepro/scripts/fetch-assets share/man/man1/gfxrepro.1.gz share/doc/gfxrepro/copyright share/doc/gfxrepro/changelog.gz share/doc/gfxrepro/CITATION.cff \
+    share/gfxrepro/scripts/fetch-assets share/gfxrepro/scripts/nightly share/man/man1/gfxrepro.1.gz share/doc/gfxrepro/copyright share/doc/gfxrepro/changelog.gz share/doc/gfxrepro/CITATION.cff \
     share/gfxrepro/results/sensitivity share/gfxrepro/results/calibration/city.csv \
     share/bash-completion/completions/gfxrepro share/zsh/vendor-completions/_gfxrepro share/fish/vendor_completions.d/gfxrepro.fish; do
     [ -s "$P/$file" ] || [ -d "$P/$file" ] || fail "$file is not installed"

@@ -341,6 +341,14 @@ TEST_F(Nightly, SaysWhatIsMissing) {
     EXPECT_EQ(refusal({"--accept"}), "nightly: --accept needs a value\n");
     EXPECT_EQ(refusal({"--program", "/nonexistent"}), "nightly: /nonexistent is no folder\n");
     EXPECT_EQ(refusal({"--fxi"}), "nightly: unknown option '--fxi'\n");
+    EXPECT_EQ(refusal({"--renderer", "/nonexistent", "mine.yaml"}),
+              "nightly: /nonexistent is no folder\n");
+    EXPECT_EQ(refusal({"--renderer", folder.path()}),
+              "nightly: --renderer needs CONFIG…, which say how it is called\n");
+    EXPECT_EQ(refusal({"--renderer", folder.path(), "mine.yaml"}),
+              "nightly: " + folder.path().string() +
+                  " is copied into the nights' folder, and has it: " + state +
+                  " (GFXREPRO_NIGHTLY names another)\n");
     EXPECT_FALSE(fs::exists(state));
 }
 
