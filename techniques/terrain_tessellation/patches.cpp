@@ -170,10 +170,13 @@ class PatchCosts {
         return edgeFactor(metadata_, settings_, view_, clipFromWorld_, patch, edge);
     }
 
-    PatchCost ofPatch(const Patch& patch) const {
+    glm::bvec2 isBeyondMap(const Patch& patch) const {
         const glm::ivec2 origin = patch.firstBlock * metadata_.blockSizeSamples(patch.level);
-        const glm::ivec2 last = metadata_.sizeSamples() - 1;
-        if (origin.x >= last.x || origin.y >= last.y) return {};  // beyond the map
+        return glm::greaterThanEqual(origin, metadata_.sizeSamples() - 1);
+    }
+
+    PatchCost ofPatch(const Patch& patch) const {
+        if (glm::any(isBeyondMap(patch))) return {};
         const int count = settings_.tile.blocksPerPatch;
         HeightRange range =
             metadata_.block(patch.level, patch.firstBlock.x, patch.firstBlock.y).whole;
@@ -193,6 +196,8 @@ class PatchCosts {
     }
 
     PatchCost ofSkirt(const Patch& patch, Edge rim) const {
+        const bool isAlongZ = rim == kWest || rim == kEast;
+        if (isBeyondMap(patch)[isAlongZ ? 1 : 0]) return {};
         HeightRange range = edgeRange(metadata_, settings_.tile, patch, rim);
         range.minM = patches_.footM;
         const glm::vec2 low(rim == kEast ? 1.0F : 0.0F, rim == kSouth ? 1.0F : 0.0F);
@@ -206,15 +211,16 @@ class PatchCosts {
         return cost;
     }
 
-    /// Of the box over a part of the patch's square; no triangles where it is culled.
+    /// Of the box over a part of the patch's square, on the map; no triangles where it is culled.
     PatchCost ofBox(const Patch& patch, glm::vec2 low, glm::vec2 high,
                     const HeightRange& range) const {
         const float block = static_cast<float>(metadata_.blockSizeSamples(patch.level));
         const glm::vec2 origin(patch.firstBlock);
         const auto corner = [&](glm::vec2 part, float height) {
+            const glm::vec2 sample =
+                (origin + part * static_cast<float>(settings_.tile.blocksPerPatch)) * block;
             const glm::vec2 at =
-                (origin + part * static_cast<float>(settings_.tile.blocksPerPatch)) * block *
-                metadata_.spacingM();
+                glm::min(sample, glm::vec2(metadata_.sizeSamples() - 1)) * metadata_.spacingM();
             return glm::vec3(at.x, height, at.y);
         };
         const glm::vec3 a = corner(low, range.minM), b = corner(high, range.maxM);

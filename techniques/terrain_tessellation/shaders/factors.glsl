@@ -92,16 +92,18 @@ bool isOutside(vec3 centre, float radius) {
 
 // The sphere about the box of the patch with its heights (a skirt's: of the rim down to `foot`).
 // Departure [zhang2012] Sec. 4.2: the printed sphere, the flat patch's diagonal, loses displaced
-// ground at the image's border. What lies beyond the map is never drawn; skirts hang from its rim.
+// ground at the image's border. What lies beyond the map is never drawn, and its vertices lie on the
+// rim: so do the skirts of a tile that reaches beyond, along the ground that it has.
 bool isBeyondMap(Patch p) {
-    return p.rim == kSurface && any(greaterThanEqual(vec2(p.origin), lastSample));
+    bvec2 beyond = greaterThanEqual(vec2(p.origin), lastSample);
+    return p.rim == kSurface ? any(beyond) : (p.rim & 1) == 0 ? beyond.y : beyond.x;
 }
 
 bool isPatchCulled(Patch p, float foot) {
     if (isBeyondMap(p)) return true;
     if (isCulling == 0) return false;
-    int span = patchSpan(p.level);
-    vec2 low = vec2(p.origin), high = low + float(span);
+    vec2 low = min(vec2(p.origin), lastSample);
+    vec2 high = min(vec2(p.origin + patchSpan(p.level)), lastSample);
     vec3 range;
     if (p.rim == kSurface) {
         ivec2 block = p.origin / (BLOCK_SEGMENTS << p.level);

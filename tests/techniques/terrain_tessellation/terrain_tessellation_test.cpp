@@ -237,6 +237,23 @@ TEST_F(TerrainTessellationTest, CullingLeavesThePictureAsItIs) {
     EXPECT_TRUE(none.images.at("image") == patch.images.at("image"));
 }
 
+// Skirts of tiles that reach beyond the map hang from its rim.
+TEST_F(TerrainTessellationTest, CullingLeavesSkirtsAtARimWithinATile) {
+    const scene::Scene scene = terrain({200, 90});
+    for (const char* view : {"overview", "30 20", "120 30", "210 20", "300 30"}) {
+        const auto run = [&](const char* culling) {
+            return recorded(fmt::format("{{cache: false, pictures: true, tau: 0, tile_patches: 2, "
+                                        "view: {}, culling: {}}}",
+                                        view, culling),
+                            &scene);
+        };
+        const auto none = run("none"), patch = run("tile_and_patch");
+        EXPECT_TRUE(none.images.at("image") == patch.images.at("image")) << view;
+        // All is in view: what reaches the picture from beyond the map has no triangles.
+        EXPECT_EQ(none.metrics.at("drawn_triangles"), patch.metrics.at("drawn_triangles")) << view;
+    }
+}
+
 TEST_F(TerrainTessellationTest, TheMapOfCulledPatchesCountsThem) {
     // 256 cells and 256 pixels: each patch of 16 cells has pixels inside of its borders.
     outputSizePx_ = {256, 256};
