@@ -18,7 +18,7 @@ namespace {
 using namespace types;
 
 struct PrintedKeys {
-    GivenKey hardware, remark, values, compared, calibrated, unfit, at;
+    GivenKey hardware, remark, values, sources, compared, calibrated, unfit, at;
 };
 const KeyTable<PrintedKeys>& printedTable() {
     using P = PrintedKeys;
@@ -33,6 +33,10 @@ const KeyTable<PrintedKeys>& printedTable() {
           "a header of row axes and columns, which goes on behind a comma at the end of its line; "
           "then the rows",
           {{"type", "string"}}},
+         {&P::sources, "sources", "{TEXT: {row axis: value, column: name}}", "{}",
+          "where these cells are copied from, and how sure that is: shown behind the remark. Each "
+          "value may be a list; what is left out is any",
+          mapOf(pairs())},
          {&P::compared, "compared", "[method]", "[]",
           "methods that the paper compares with a usual one: no fit reads their cells",
           listOf(text())},
@@ -149,10 +153,7 @@ Names namesIn(const GivenKey& list, std::string_view allowed) {
 }
 
 /// Cells go by row axes and, as a claim across rows calls it, `column`.
-Node::Sequence cellsIn(const GivenKey& calibrated, const TableNames& names) {
-    const std::string what = "printed." + calibrated.name();
-    if (!calibrated->isSequence())
-        throwNotAllowed(*calibrated, what, "[{row axis: value, column: name}]");
+TableNames cellNames(const TableNames& names) {
     TableNames all = names;
     all.rowAxes.emplace_back(kColumnAxis);
     if (names.hasAllColumns) {
@@ -160,8 +161,35 @@ Node::Sequence cellsIn(const GivenKey& calibrated, const TableNames& names) {
             all.rowValues[kColumnAxis].push_back(Node::scalar(column, {}, true));
         }
     }
-    for (const Node& cells : calibrated->items()) readRowFilter(cells, what, all);
+    return all;
+}
+
+Node::Sequence cellsIn(const GivenKey& calibrated, const TableNames& names) {
+    const std::string what = "printed." + calibrated.name();
+    if (!calibrated->isSequence())
+        throwNotAllowed(*calibrated, what, "[{row axis: value, column: name}]");
+    for (const Node& cells : calibrated->items()) readRowFilter(cells, what, cellNames(names));
     return calibrated->items();
+}
+
+/// "at bits 32, 48: a figure, read off".
+Names sourcesIn(const GivenKey& sources, const TableNames& names) {
+    const std::string what = "printed." + sources.name();
+    if (!sources->isMap()) throwNotAllowed(*sources, what, "{TEXT: {row axis: value}}");
+    Names texts;
+    for (const auto& [text, cells] : sources->entries()) {
+        Names places;
+        for (const auto& [axis, values] : readRowFilter(cells, what, cellNames(names))) {
+            Names labels;
+            for (const Node& value : values) labels.push_back(value.text());
+            places.push_back(axis + ' ' + joined(labels));
+        }
+        if (places.empty()) {
+            throwNotAllowed(cells, what, "{row axis: value}; of the whole table 'remark' says it");
+        }
+        texts.push_back(fmt::format("at {}: {}", joined(places, " and "), text));
+    }
+    return texts;
 }
 
 }  // namespace
@@ -177,6 +205,7 @@ std::vector<NoEffect> printedInVain(const Experiment& experiment) {
             {printed->keyLocation(key.name()), fmt::format("'{}': {}", key.name(), why)});
     };
     const std::string with = "; allowed: with '" + given.values.name() + "'";
+    require(given.sources, !experiment.printed.rows.empty(), "nothing is printed" + with);
     require(given.at, experiment.isPublished(),
             "nothing is printed that could have been measured there" + with);
     require(given.compared, !experiment.printed.rows.empty(),
@@ -197,7 +226,9 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
                     fmt::format("printed: '{}' without '{}'", key.name(), without));
     };
     if (given.values && layout && !names) refuse(given.values, "layout");
-    if (given.calibrated && !names) refuse(given.calibrated, layout ? "layout" : "technique");
+    for (const GivenKey& key : {given.calibrated, given.sources}) {
+        if (key && !names) refuse(key, layout ? "layout" : "technique");
+    }
     if (given.at && !layout) refuse(given.at, "technique");
     Printed printed;
     printed.location = node.location();
@@ -206,6 +237,11 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
     printed.compared = namesIn(given.compared, "[methods]");
     printed.unfit = namesIn(given.unfit, "[scenes]");
     if (given.calibrated) printed.calibrated = cellsIn(given.calibrated, *names);
+    if (given.sources) {
+        for (const std::string& text : sourcesIn(given.sources, *names)) {
+            printed.remark += (printed.remark.empty() ? "" : "; ") + text;
+        }
+    }
     if (given.at) printed.at = readAt(given.at);
     const GivenKey& values = given.values;
     if (!values) return printed;

@@ -212,6 +212,33 @@ TEST_F(ExperimentTest, CalibratedCellsAreTheTables) {
               head + "23: printed.calibrated is aa; allowed: [{row axis: value, column: name}]");
 }
 
+TEST_F(ExperimentTest, SourcesOfPrintedCellsStandBehindTheRemark) {
+    const auto with = [](const std::string& sources) {
+        return "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s, t]}\n"
+               "layout: {rows: scene, columns: {aa: m, bb: m}}\nprinted:\n  sources: " +
+               sources + "\n";
+    };
+    const std::string values = "\n  values: |\n    scene,aa\n    s,1";
+    EXPECT_EQ(load(with("{read off: {scene: [s, t], column: bb}, a copy: {scene: s}}\n"
+                        "  remark: as printed" +
+                        values))
+                  .printed.remark,
+              "as printed; at scene s, t and column bb: read off; at scene s: a copy");
+    EXPECT_EQ(load(with("{a copy: {scene: s}}" + values)).printed.remark, "at scene s: a copy");
+    const std::string head = "DIR/zju/a.yaml:7:";
+    EXPECT_EQ(loadError(with("{a copy: {scene: u}}")),
+              head + "29: printed.sources.scene is u; allowed: s | t");
+    EXPECT_EQ(loadError(with("{a copy: {}}")),
+              head +
+                  "21: printed.sources is {}; allowed: {row axis: value}; of the whole table "
+                  "'remark' says it");
+    EXPECT_EQ(loadError(with("a copy")),
+              head + "12: printed.sources is a copy; allowed: {TEXT: {row axis: value}}");
+    EXPECT_EQ(
+        loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\", sources: {b: {a: 1}}}\n"),
+        "DIR/zju/a.yaml:3:27: printed: 'sources' without 'technique'");
+}
+
 TEST_F(ExperimentTest, PrintedParameters) {
     const std::string table =
         "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: [s], grid: [4, 8]}\n"
