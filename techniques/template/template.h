@@ -1,4 +1,4 @@
-// A technique in miniature: two methods, a truth on the CPU, a metric of each.
+// A technique in miniature: three methods, a truth on the CPU, a metric of each.
 #pragma once
 
 #include "runner/technique/technique.h"

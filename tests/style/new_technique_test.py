@@ -33,14 +33,15 @@ done
 """
 
 
-def undo(root, said):
-    """The command that was printed leaves the tree as it was, but for the test's own programs."""
-    command = said.splitlines()[-1].partition(": ")[2]
-    undone = run("sh", "-c", command, cwd=root)
-    expect(undone.returncode == 0, f"{command}: {undone.stderr}")
+def undo(root, *options):
+    """--remove leaves the tree as it was, but for the test's own programs."""
+    undone = run(root / "scripts/new_technique", "--remove", NAME, *options)
+    expect(undone.returncode == 0, undone.stderr)
+    run("git", "-C", root, "checkout", "--quiet", "configs/schema", "configs/README.md")  # of a program that knows no schema
     left = run("git", "-C", root, "status", "--porcelain").stdout.splitlines()
     expect([line for line in left if line[3:] not in ("build/", "scripts/build", "scripts/__pycache__/")] == [],
-           f"{command} leaves {left}")
+           f"--remove leaves {left}")
+    return undone.stdout
 
 
 def expect(is_true, message):
@@ -86,7 +87,8 @@ with tempfile.TemporaryDirectory() as folder:
     expect(written.returncode == 0, written.stderr)
     files = [path for part in ("techniques", "tests/techniques") for path in (root / part / NAME).rglob("*.*")]
     files += [root / f"configs/{kind}/{NAME}.yaml" for kind in ("smoke", "nightly")]
-    expect(len(files) == 11, f"{len(files)} files: {files}")
+    files.append(root / f"configs/smoke/{NAME}-methods.yaml")
+    expect(len(files) == 13, f"{len(files)} files: {files}")
     for path in files:
         expect("template" not in path.read_text().lower(), f"{path} speaks of the template")
     for path, line in {"techniques/CMakeLists.txt": f"        technique_{NAME}\n",
@@ -104,7 +106,12 @@ with tempfile.TemporaryDirectory() as folder:
     expect(checked.returncode == 0, checked.stdout)
     compiles(root, f"techniques/{NAME}/{NAME}.cpp", "techniques/template/template.cpp")
     compiles(root, f"tests/techniques/{NAME}/{NAME}_test.cpp", "tests/techniques/template/template_test.cpp")
-    undo(root, written.stdout)
+    expect(written.stdout.endswith(f": scripts/new_technique --remove {NAME}\n"), written.stdout)
+    undo(root, "--write-only")
+    for name, reason in {"template": "'template' is no technique that it has made", NAME: f"'{NAME}' is no technique that it has made",
+                         "soft_shadows": "configs/presets/soft-shadows-calibration.yaml measures 'soft_shadows': it stays"}.items():
+        stays = run(script, "--remove", name)
+        expect(stays.returncode == 1 and stays.stderr == f"new_technique: {reason}\n", stays.stderr)
 
     # The steps of trying it out, with programs that only say what they were asked; one that fails ends them.
     (root / "scripts/build").write_text(PRETENDED_BUILD)
@@ -113,12 +120,13 @@ with tempfile.TemporaryDirectory() as folder:
     asked = [line for line in tried.stdout.splitlines() if line.startswith("asked: ")]
     expect(asked == [f"asked: build release gfxrepro test_{NAME}", f"asked: test_{NAME} --gtest_brief=1",
                      f"asked: gfxrepro check {root}/configs/nightly/{NAME}.yaml",
-                     f"asked: gfxrepro reproduce {root}/configs/smoke/{NAME}.yaml --device software"], asked)
-    undo(root, tried.stdout)
+                     f"asked: gfxrepro reproduce {root}/configs/smoke/{NAME}-methods.yaml {root}/configs/smoke/{NAME}.yaml --device software"],
+           asked)
+    undo(root)
     failed = run(script, NAME, env={**os.environ, "BROKEN": "1"})
     expect(failed.returncode == 3 and failed.stderr == f"new_technique: test_{NAME} failed\n"
            and "asked: gfxrepro check" not in failed.stdout and "is there and registered" not in failed.stdout, failed)
-    undo(root, failed.stdout)
+    expect("asked: build release gfxrepro\n" in undo(root), "the program is built without it")
 
     without = root / "without"
     without.mkdir()

@@ -1,9 +1,13 @@
-// Both methods against what is known of their pictures, and what is refused.
+// All methods against what is known of their pictures, and what is refused.
 #include "techniques/template/template.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
+#include <set>
+#include <string>
 
 #include "scenes/shared/mesh_builder.h"
 #include "techniques/kit/view.h"
@@ -31,6 +35,28 @@ TEST_F(TemplateTest, ARampHasHalfItsBrightness) {
     EXPECT_EQ(passes_, std::vector<std::string>{"draw"});
 }
 
+TEST_F(TemplateTest, ADitheredRampHasTheMeanOfTheRamp) {
+    const test::MetricRecorder dithered =
+        recorded("{method: dither, tile: 48, errors: true}", nullptr);
+    auto m = dithered.metrics;
+    const double pixels = kSizePx.x * kSizePx.y;
+    EXPECT_EQ(m["mean_brightness"], m["white_pixels/draw"] / pixels);
+    // 48² thresholds decide, and each of two pixels: a share p of them scatters by less than this.
+    EXPECT_NEAR(m["mean_brightness"], 0.5, 4 * std::sqrt(0.25 / (48.0 * 48.0)));
+    EXPECT_GT(m["white_pixels/draw"], 0.0);
+    EXPECT_EQ(dithered.withTruth, std::set<std::string>{"result"});
+    EXPECT_EQ(recorded("{method: dither, tile: 48}", nullptr).metrics,
+              recorded("{method: dither, tile: 48}", nullptr).metrics);
+}
+
+TEST_F(TemplateTest, EachMethodHasItsParameters) {
+    test::expectRefused(kTemplate,
+                        {{"{method: dither, tile: 4}", ""},
+                         {"{method: silhouette, view: \"30 20\"}", ""},
+                         {"{method: gradient, tile: 4}", "26: 'tile' needs 'method: dither'"},
+                         {"{method: dither, view: x}", "24: 'view' needs 'method: silhouette'"}});
+}
+
 TEST_F(TemplateTest, ASilhouetteCoversWhatItsCornersEnclose) {
     const std::array<glm::vec3, 4> corners = {{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}}};
     scene::MeshBuilder builder;
@@ -55,9 +81,34 @@ TEST_F(TemplateTest, ASilhouetteCoversWhatItsCornersEnclose) {
     EXPECT_LE(m["wrong_pct"] / 100 * pixels, 1.01);  // an edge may touch a pixel's centre
 }
 
+TEST_F(TemplateTest, APathHasAViewAFrame) {
+    scene::MeshBuilder builder;
+    builder.addQuad({0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
+    const scene::Scene scene = scene::sceneOf(builder.take("plate", -1));
+    // From before the plate to beside it.
+    const std::string path =
+        "{method: silhouette, view: \"1 0.5 6 > 1 0.5 0; 7 0.5 0.5 > 1 0.5 0\"}";
+    const double before = recorded(path, &scene, 0, 2).metrics["mean_brightness"];
+    const double beside = recorded(path, &scene, 1, 2).metrics["mean_brightness"];
+    EXPECT_GT(beside, 0.0);
+    EXPECT_GT(before, 1.5 * beside);
+    EXPECT_EQ(test::errorText([] {
+                  Params params = test::paramsOf(kTemplate, "{method: gradient}");
+                  kTemplate.create(params)->requireFrames(2);
+              }),
+              "2 frames: the technique draws the same in each; allowed: 1");
+}
+
 TEST_F(TemplateTest, ASilhouetteNeedsTriangles) {
     EXPECT_EQ(test::errorText([&] { recorded("{method: silhouette}", nullptr); }),
               "the technique needs a scene, and the case has none");
+    Params params = test::paramsOf(kTemplate, "{method: silhouette, view: walk}");
+    const auto technique = kTemplate.create(params);
+    scene::MeshBuilder builder;
+    builder.addQuad({0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
+    const scene::Scene scene = scene::sceneOf(builder.take("plate", -1));
+    EXPECT_THAT(test::errorText([&] { technique->requireScene(scene); }),
+                testing::HasSubstr("'walk'"));
 }
 
 }  // namespace
