@@ -158,9 +158,9 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
     EXPECT_EQ(merged.out.find("# table-10.yaml with all that it extends\ntable: xie2017/10\n"), 0u);
     const std::string file = folder.write("merged.yaml", merged.out);
     std::vector<std::string> tables, files;
-    for (const char* document : {"zju2005", "xie2017", "zhang2012"}) {
-        const auto tablesOf = std::filesystem::path(GFXREPRO_CONFIGS) / document;
-        for (const auto& entry : std::filesystem::directory_iterator(tablesOf)) {
+    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    for (const config::Document& document : config::readDocuments(configs / "documents.yaml")) {
+        for (const auto& entry : std::filesystem::directory_iterator(configs / document.id)) {
             if (entry.path().extension() != ".yaml") continue;
             tables.push_back(entry.path());
             const std::string out = gfxrepro({"describe", tables.back(), "--merged"}).out;
