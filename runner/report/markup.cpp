@@ -1,7 +1,6 @@
 #include "runner/report/markup.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <iterator>
 #include <utility>
@@ -48,7 +47,7 @@ std::string escapeXml(std::string_view text) {
 }
 
 std::string escapeLatex(std::string_view text) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 40> kCommands = {{
+    static constexpr std::pair<std::string_view, std::string_view> kCommands[] = {
         {"\\", "\\textbackslash{}"},
         {"{", "\\{"},
         {"}", "\\}"},
@@ -89,7 +88,30 @@ std::string escapeLatex(std::string_view text) {
         {"τ", "$\\tau$"},
         {"φ", "$\\varphi$"},
         {"Δ", "$\\Delta$"},
-    }};
+        {"⁰", "$^0$"},
+        {"⁴", "$^4$"},
+        {"⁵", "$^5$"},
+        {"⁶", "$^6$"},
+        {"⁷", "$^7$"},
+        {"⁸", "$^8$"},
+        {"⁹", "$^9$"},
+        {"⁻", "$^-$"},
+        {"ᵀ", "$^T$"},
+        {"₀", "$_0$"},
+        {"₁", "$_1$"},
+        {"₂", "$_2$"},
+        {"₋", "$_-$"},
+        {"ᵢ", "$_i$"},
+        {"ⱼ", "$_j$"},
+        {"≈", "$\\approx$"},
+        {"≠", "$\\neq$"},
+        {"√", "$\\surd$"},
+        {"γ", "$\\gamma$"},
+        {"η", "$\\eta$"},
+        {"ρ", "$\\rho$"},
+        {"ω", "$\\omega$"},
+        {"Σ", "$\\Sigma$"},
+    };
     std::string out;
     while (!text.empty()) {
         std::size_t length = 1;

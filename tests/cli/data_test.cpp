@@ -138,7 +138,7 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     EXPECT_EQ(readFile(dir("theirs") + "/tables/sweep-theirs.csv").substr(0, 8), "samples,");
     EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.md"), HasSubstr(mark));
     EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.tex"),
-                HasSubstr("\\par{\\footnotesize Note: imported: these numbers were measured "
+                HasSubstr("Note: imported: these numbers were measured "
                           "elsewhere, on RTX 4090, "));
     const std::string page = readFile(dir("theirs") + "/report.html");
     EXPECT_THAT(page, HasSubstr(mark));

@@ -100,10 +100,10 @@ TEST_F(RunCommand, TableThatIsOnlyPrinted) {
               "| function | dimensions |\n| --- | ---: |\n| panorama | 2 |\n");
     const std::string latex = readFile(dir + "/tables/p-1.tex");
     EXPECT_EQ(latex.substr(latex.rfind("\\gfxreproset")),
-              "\\gfxreproset{p/1/panorama/dimensions/printed}{2}\n"
-              "\\begin{tabular}{lr}\n\\toprule\nfunction & dimensions \\\\\n\\midrule\n"
-              "{panorama} & \\gfxrepro{p/1/panorama/dimensions/printed} \\\\\n"
-              "\\bottomrule\n\\end{tabular}\n");
+              "\\gfxreproset{p/1/panorama/dimensions/printed}{2}%\n"
+              "\\begin{tabular}{lr}\n\\toprule\n{function}\n& {dimensions} \\\\\n\\midrule\n"
+              "{panorama}\n& \\gfxrepro{p/1/panorama/dimensions/printed} \\\\\n"
+              "\\bottomrule\n\\end{tabular}%\n");
 }
 
 /// A table whose profiles differ, with a printed value a row.

@@ -43,19 +43,23 @@ printed: {values: "scene,draw_ms\nmodels/duck,9.0"}
     EXPECT_THAT(keysOf(latex),
                 testing::ElementsAre(
                     "zju2005/9.9",  // its parameters
-                    "zju2005/9.9/models-duck/draw_ms/printed", "zju2005/9.9/models-duck/draw_ms",
-                    "zju2005/9.9/models-duck/draw_ms/low", "zju2005/9.9/models-duck/draw_ms/high",
+                    "zju2005/9.9/notes", "zju2005/9.9/models-duck/draw_ms/printed",
+                    "zju2005/9.9/models-duck/draw_ms", "zju2005/9.9/models-duck/draw_ms/low",
+                    "zju2005/9.9/models-duck/draw_ms/high",
                     "zju2005/9.9/models-duck/draw_ms/bounds", "zju2005/9.9/models-bunny/draw_ms"));
-    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw_ms}{9.0}\n"));
-    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-bunny/draw_ms}{crash}\n"));
+    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw_ms}{9.0}%\n"));
+    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-bunny/draw_ms}{crash}%\n"));
     EXPECT_THAT(latex,
-                HasSubstr("{models/duck} & \\gfxrepro{zju2005/9.9/models-duck/draw_ms/printed} & "
-                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms} "
-                          "{\\scriptsize(\\gfxrepro{zju2005/9.9/models-duck/draw_ms/low} "
+                HasSubstr("{duck}\n& \\gfxrepro{zju2005/9.9/models-duck/draw_ms/printed}\n& "
+                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms} \\\\\n"
+                          "&\n& \\scriptsize (\\gfxrepro{zju2005/9.9/models-duck/draw_ms/low} "
                           "\\ldots\\ "
-                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms/high})} \\\\\n"));
-    EXPECT_THAT(latex, HasSubstr("{zju2005/9.9/models-duck/draw_ms/bounds}{range}\n"));
-    EXPECT_THAT(latex, HasSubstr(" & printed & measured \\\\\n\\midrule\n"));
+                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms/high}) \\\\\n"));
+    EXPECT_THAT(latex, HasSubstr("{zju2005/9.9/models-duck/draw_ms/bounds}{range}%\n"));
+    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lrr}\n\\toprule\n{scene}\n"
+                                 "& \\multicolumn{2}{c}{{draw [ms]}} \\\\\n"
+                                 "\\cmidrule(lr){2-3}\n"
+                                 "& printed\n& measured \\\\\n\\midrule\n"));
     EXPECT_THAT(latex, HasSubstr("%   \\gfxrepro{zju2005/9.9/models-duck/draw_ms}  as measured\n"));
 }
 
@@ -80,9 +84,9 @@ layout: {rows: scene, columns: {e: {metric: error}}}
 )",
                                                    {}));
     EXPECT_THAT(keysOf(latex),
-                testing::ElementsAre("zju2005/9.9", "zju2005/9.9/ring.obj/e",
+                testing::ElementsAre("zju2005/9.9", "zju2005/9.9/notes", "zju2005/9.9/ring.obj/e",
                                      "zju2005/9.9/-a-x.obj/e", "zju2005/9.9/-b-x.obj/e"));
-    EXPECT_THAT(latex, HasSubstr("{ring.obj} & "));
+    EXPECT_THAT(latex, HasSubstr("{ring.obj}\n& "));
     EXPECT_THAT(latex, Not(HasSubstr("/home/me")));
 }
 
@@ -94,10 +98,11 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
 )",
                                                    {}));
     std::vector<std::string> keys = keysOf(latex);
-    ASSERT_EQ(keys.size(), 28U);
+    ASSERT_EQ(keys.size(), 29U);
     EXPECT_EQ(std::set<std::string>(keys.begin(), keys.end()).size(), keys.size());
     EXPECT_EQ(keys[0], "zju2005/9.9");
-    keys.erase(keys.begin());
+    EXPECT_EQ(keys[1], "zju2005/9.9/notes");
+    keys.erase(keys.begin(), keys.begin() + 2);
     for (const std::string& key : keys) {
         EXPECT_THAT(key, testing::MatchesRegex("zju2005/9\\.9/[-A-Za-z0-9.+_]+/[-A-Za-z0-9.+_]+"));
     }
@@ -108,7 +113,7 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
     EXPECT_EQ(latexKeyPart("é~$"), "---");
     EXPECT_EQ(latexKeyPart(""), "none");
     // After \\ a bracket would be its argument.
-    EXPECT_THAT(latex, HasSubstr("\\\\\n{[0, 1]} & "));
+    EXPECT_THAT(latex, HasSubstr("\\\\\n{[0, 1]}\n& "));
 }
 
 TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
@@ -116,9 +121,12 @@ TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
     table.id = "p/1";
     table.columns = {{"b", ""}};
     EXPECT_THAT(tableLatex(table), Not(HasSubstr("Note")));
-    EXPECT_THAT(tableLatex(table, {"imported: 5 % elsewhere"}),
-                HasSubstr("\\end{tabular}\n\\par{\\footnotesize Note: imported: 5 \\% "
-                          "elsewhere.\\par}\n"));
+    const std::string latex = tableLatex(table, {"imported: 5 % elsewhere"});
+    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{p/1/notes}{Note: imported: 5 \\% elsewhere.}%\n"));
+    EXPECT_THAT(latex, HasSubstr("%     \\par\\smallskip\\parbox{\\linewidth}"
+                                 "{\\gfxrepro{p/1/notes}}\n%   \\end{table*}\n"));
+    EXPECT_THAT(latex, Not(HasSubstr("\n\\par")));
+    EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}%\n")) << "nothing widens a box around it";
 }
 
 TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
@@ -130,8 +138,9 @@ TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
     cell.measured = "5";
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
-    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\na & b \\\\\n\\midrule\n{1} & "
-                                 "\\gfxrepro{p/1/1/b} \\\\\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} \\\\\n\\midrule\n{1}\n& "
+                          "\\gfxrepro{p/1/1/b} \\\\\n"));
     EXPECT_THAT(latex, Not(HasSubstr("printed")));
 }
 
@@ -147,8 +156,61 @@ TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
     EXPECT_THAT(keysOf(latex), testing::ElementsAre("p/1/1/b/printed"));
-    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\na & b \\\\\n\\midrule\n{1} & "
-                                 "\\gfxrepro{p/1/1/b/printed} \\\\\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} \\\\\n\\midrule\n{1}\n& "
+                          "\\gfxrepro{p/1/1/b/printed} \\\\\n"));
+}
+
+/// Of a published table, too: a column for print stands beside what is printed alone.
+TEST(Latex, EachColumnAloneSaysWhatIsPrinted) {
+    tables::Table table;
+    table.id = "p/1";
+    table.isPublished = true;
+    table.rowAxes = {"a"};
+    table.columns = {{"b", ""}, {"lit_ms", ""}};
+    tables::Cell printed, measured;
+    printed.measured = measured.measured = "5";
+    printed.printed = "6";
+    table.rows = {{{"1"}, tables::SceneSource::Unknown, {printed, measured}}};
+    EXPECT_THAT(tableLatex(table),
+                HasSubstr("\\begin{tabular}{lrrr}\n\\toprule\n{a}\n& \\multicolumn{2}{c}{{b}}\n"
+                          "& \\gfxreprohead{r}{{lit}\\\\{[ms]}} \\\\\n\\cmidrule(lr){2-3}\n"
+                          "& printed\n& measured& \\\\\n\\midrule\n{1}\n& "
+                          "\\gfxrepro{p/1/1/b/printed}\n& \\gfxrepro{p/1/1/b}\n"
+                          "& \\gfxrepro{p/1/1/lit_ms} \\\\\n"));
+}
+
+tables::Table wideTable(std::size_t columns) {
+    tables::Table table;
+    table.id = "p/1";
+    table.rowAxes = {"a"};
+    table.rows = {{{"1"}, tables::SceneSource::Unknown, {}}};
+    for (std::size_t i = 0; i < columns; ++i) {
+        table.columns.push_back({"quantity_" + std::to_string(i), ""});
+        tables::Cell cell;
+        cell.measured = "1,234,567";
+        table.rows.front().cells.push_back(cell);
+    }
+    return table;
+}
+
+TEST(Latex, AWideTableLiesAcrossAndAWiderOneIsInBlocks) {
+    const std::string upright = tableLatex(wideTable(9)), across = tableLatex(wideTable(12)),
+                      blocks = tableLatex(wideTable(20));
+    EXPECT_THAT(upright, HasSubstr("%   \\begin{table*}"));
+    EXPECT_THAT(across, HasSubstr("\\usepackage{rotating}"));
+    EXPECT_THAT(across, HasSubstr("%   \\begin{sidewaystable*}"));
+    EXPECT_THAT(blocks, HasSubstr("%   \\begin{table*}"));
+    EXPECT_THAT(blocks, HasSubstr("\n\\begin{tabular}{@{}l@{}}\n\\begin{tabular}{lrrrrrrrrrr}\n"));
+    const std::string label = "\\midrule\n{1}\n& ";
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = blocks.find(label, at)) != blocks.npos; ++at) ++count;
+    EXPECT_EQ(count, 2U) << "each block has the labels";
+    for (std::size_t i = 0; i < 20; ++i) {
+        const std::string number = "& \\gfxrepro{p/1/1/quantity_" + std::to_string(i) + "}";
+        EXPECT_NE(blocks.find(number), blocks.npos);
+        EXPECT_EQ(blocks.find(number), blocks.rfind(number)) << "each number stands once";
+    }
 }
 
 }  // namespace

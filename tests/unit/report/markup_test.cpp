@@ -27,6 +27,7 @@ TEST(Markup, Latex) {
               "50 \\% of a\\_b \\& \\textbackslash{}input\\{x\\} \\$1\\$ \\#2 "
               "\\textasciicircum{}\\textasciitilde{}");
     EXPECT_EQ(escapeLatex("256³ × 2"), "256$^3$ $\\times$ 2");
+    EXPECT_EQ(escapeLatex("10⁻⁴ ≤ xᵢ"), "10$^-$$^4$ $\\leq$ x$_i$");
 }
 
 TEST(Markup, Markdown) {

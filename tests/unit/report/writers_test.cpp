@@ -88,12 +88,11 @@ TEST(Writers, TableFiles) {
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{llrrrr}\n\\toprule\n"));
     EXPECT_THAT(latex,
-                HasSubstr("\\gfxreproset{zju2005/9.9}{Measured at the printed parameters.}\n"));
-    EXPECT_THAT(latex,
-                testing::EndsWith("\\end{tabular}\n"
-                                  "\\par{\\footnotesize \\gfxrepro{zju2005/9.9}\\par}\n"
-                                  "\\par{\\footnotesize Repeats or processes came to different "
-                                  "numbers, and no seed is declared: error.\\par}\n"));
+                HasSubstr("\\gfxreproset{zju2005/9.9}{Measured at the printed parameters.}%\n"));
+    EXPECT_THAT(
+        latex,
+        HasSubstr("\\gfxreproset{zju2005/9.9/notes}{\\gfxrepro{zju2005/9.9} Repeats or "
+                  "processes came to different numbers, and no seed is declared: error.}%\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
 }
 
@@ -159,10 +158,11 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
     EXPECT_THAT(markdown, HasSubstr("| duck | 2 → 2‡ | 1 → 2 |\n| bunny | 3 | 3 |\n"));
     EXPECT_THAT(markdown, HasSubstr("\n\n‡ " + legend + "\n"));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
-    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/error/calibrated}{yes}\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/error/calibrated}{yes}%\n"));
     EXPECT_THAT(latex, HasSubstr("& \\gfxrepro{zju2005/9.9/models-duck/error}"
-                                 "\\textsuperscript{\\ddag} &"));
-    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\ddag} " + legend + "\\par}\n"));
+                                 "\\textsuperscript{\\ddag}\n&"));
+    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\ddag} " + legend + "}%\n"));
 }
 
 TEST(Writers, TimesThatAreNotOfOneClockAreMarked) {
@@ -187,10 +187,10 @@ layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, 
     EXPECT_THAT(markdown, HasSubstr("| duck | 2 | 4§ |\n| bunny | 3 | 5 |\n\n§ " + legend));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw/clock}"
-                                 "{0.345 and 1.98 GHz}\n"));
+                                 "{0.345 and 1.98 GHz}%\n"));
     EXPECT_THAT(latex, HasSubstr("\\gfxrepro{zju2005/9.9/models-duck/draw}"
                                  "\\textsuperscript{\\S} \\\\\n"));
-    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\S} " + legend + "\\par}\n"));
+    EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\S} " + legend + "}%\n"));
 }
 
 TEST(Writers, ClaimFiles) {
