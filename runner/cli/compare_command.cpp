@@ -52,6 +52,7 @@ struct Measured {
     std::string buildId;
     std::string madeFrom;                              // its line of made-from.txt
     std::map<std::string, std::string> programs = {};  // hash and version by file
+    std::string started = {};
 };
 
 Measured readMeasured(const fs::path& runDir) {
@@ -100,6 +101,7 @@ Measured readMeasured(const fs::path& runDir) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
     }
+    measured.started = run.manifest.value("started", "");
     const std::vector<std::string>& configs = run.plan.request.configs;
     for (std::size_t i = 0; i < std::min(configs.size(), run.plan.experiments.size()); ++i) {
         measured.configs[run.plan.experiments[i].id] = configs[i];
@@ -433,10 +435,12 @@ int compare(const CompareOptions& options) {
                                                 : fmt::format("{} cases are", newer.untimedCases)));
     }
     if (!options.history.empty()) comparison.steps = keepHistory(options.history, newer);
+    comparison.started = newer.started;
     writeFileAtomic(folder / "comparison.md", regression::markdown(comparison));
     writeFileAtomic(folder / "junit.xml", regression::junitXml(comparison));
-    writeFileAtomic(folder / "benchmark.json",
-                    regression::smallerIsBetterJson(comparison.differences));
+    const std::string times = regression::smallerIsBetterJson(comparison.differences);
+    if (!times.empty()) writeFileAtomic(folder / "benchmark.json", times);
+    if (times.empty()) fs::remove(folder / "benchmark.json");  // of a comparison before
     sayAll(comparison, folder);
     annotateChanges(comparison, newer.configs);
     return exitCodeOf(comparison, newer.failures);

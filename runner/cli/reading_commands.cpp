@@ -204,7 +204,8 @@ int judgeAfterwards(const fs::path& runDir, const std::vector<std::string>& conf
     const fs::path folder = out / "judged-afterwards";
     fs::remove_all(folder);
     report::writeTables(folder, judged.tables, notes);
-    report::writeClaims(folder, run::caseResults(run), judged.claims, judged.context);
+    report::writeClaims(folder, run::caseResults(run, runDir), judged.claims, judged.context,
+                        run.manifest.value("started", ""));
     const int verdict = sayClaims(judged.claims);
     sayNotes(run.manifest);
     say("judged after the run: {}\n", (folder / "claims.csv").string());

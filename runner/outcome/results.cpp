@@ -321,7 +321,8 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
         tables::writeFits(out, experiments, results.tables);
     }
     if (which.claims) {
-        report::writeClaims(out, run::caseResults(run), results.claims, results.context);
+        report::writeClaims(out, run::caseResults(run, runDir), results.claims, results.context,
+                            run.manifest.value("started", ""));
     }
     if (!which.tables && !which.report) return results;
     const bool isKept = which.tables || !which.embeds;

@@ -111,6 +111,7 @@ struct CaseEnd {
     Outcome outcome = Outcome::Measured;
     std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
     SourceLocation where{};  // its config
+    double seconds = 0.0;    // that its processes took, together
 };
 
 }  // namespace gfxrepro::records

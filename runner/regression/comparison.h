@@ -147,6 +147,7 @@ struct Comparison {
     std::vector<Difference> differences;
     std::vector<SeriesStep> steps{};
     std::vector<std::string> notes{};
+    std::string started{};  // when the newer run began
 
     /// Something got slower or changed, now or since some night.
     bool isAlarm() const;
@@ -158,8 +159,9 @@ std::string markdown(const Comparison& comparison);
 /// A test each, of a name of its own: alarms are failures; what could not be told is skipped.
 std::string junitXml(const Comparison& comparison);
 
-/// [{"name", "unit", "value", "range"}]: the times after, and the FLIP of each picture that
-/// changed, in the form `customSmallerIsBetter` of GitHub's benchmark action.
+/// [{"name", "unit", "value", "range", "extra"}]: the times after, in the form
+/// `customSmallerIsBetter` of GitHub's benchmark action, which keeps their history by their names:
+/// parameters stand in `extra`. Empty without times, of which the action makes an error.
 std::string smallerIsBetterJson(const std::vector<Difference>& differences);
 
 }  // namespace gfxrepro::regression

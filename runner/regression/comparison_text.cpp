@@ -72,13 +72,14 @@ std::string markdownRow(const Difference& difference, const std::string& name) {
                        verdict);
 }
 
-/// A name each: titles, with the unit where several have one.
+/// The names of tests: titles with the parameters that tell series apart, and their unit where
+/// nothing else does.
 std::vector<std::string> uniqueNames(const std::vector<const SeriesKey*>& keys) {
     std::vector<std::string> names = titlesOf(keys);
     std::map<std::string, int> counts;
     for (const std::string& name : names) ++counts[name];
     for (std::size_t i = 0; i < names.size(); ++i) {
-        if (counts[names[i]] > 1) names[i] += " " + keys[i]->unit;
+        if (counts[names[i]] > 1) names[i] += ' ' + keys[i]->unit;
     }
     return names;
 }
@@ -129,27 +130,29 @@ std::string markdown(const Comparison& comparison) {
 }
 
 std::string junitXml(const Comparison& comparison) {
-    using Outcome = records::CaseEnd::Outcome;
+    using Outcome = report::JunitTest::Outcome;
     const std::vector<Difference>& differences = comparison.differences;
-    std::vector<report::JunitTest> tests;
+    report::JunitSuite suite{"regression", {}};
     std::vector<std::string> names = uniqueNames(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
         const Difference& one = differences[i];
         const bool isPass =
             one.verdict == SeriesVerdict::Same || one.verdict == SeriesVerdict::Faster;
-        tests.push_back({one.key.table, names[i],
-                         isPass          ? Outcome::Measured
-                         : one.isAlarm() ? Outcome::Failed
-                                         : Outcome::Skipped,
-                         fmt::format("{} {}", verdictText(one), ratioText(one))});
+        suite.tests.push_back({one.key.table, names[i],
+                               isPass          ? Outcome::Passed
+                               : one.isAlarm() ? Outcome::Failed
+                                               : Outcome::Skipped,
+                               std::string(verdictName(one.verdict)),
+                               fmt::format("{} {}", verdictText(one), ratioText(one))});
     }
     names = uniqueNames(keysOf(comparison.steps));
     for (std::size_t i = 0; i < comparison.steps.size(); ++i) {
         const SeriesStep& step = comparison.steps[i];
-        tests.push_back({step.key.table, "history of " + names[i],
-                         step.isAlarm() ? Outcome::Failed : Outcome::Measured, stepLine(step)});
+        suite.tests.push_back({step.key.table, "history of " + names[i],
+                               step.isAlarm() ? Outcome::Failed : Outcome::Passed, "step",
+                               stepLine(step)});
     }
-    return std::string(report::kXmlHead) + report::junitSuite("regression", tests);
+    return report::junitXml({suite}, comparison.started);
 }
 
 std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
@@ -157,20 +160,14 @@ std::string smallerIsBetterJson(const std::vector<Difference>& differences) {
     const std::vector<std::string> names = uniqueNames(keysOf(differences));
     for (std::size_t i = 0; i < differences.size(); ++i) {
         const Difference& difference = differences[i];
-        if (difference.isAlarm() && difference.picture) {
-            entries.push_back(
-                {{"name", names[i]},
-                 {"unit", "FLIP"},
-                 {"value", difference.picture->flip},
-                 {"range", fmt::format("largest difference {:.3g}", difference.picture->largest)}});
-        }
         if (!difference.key.isTime() || !(difference.after > 0.0)) continue;
         entries.push_back({{"name", names[i]},
                            {"unit", difference.key.unit},
                            {"value", difference.after},
-                           {"range", fmt::format("× {}", ratioText(difference))}});
+                           {"range", fmt::format("× {}", ratioText(difference))},
+                           {"extra", difference.key.params}});
     }
-    return entries.dump(2) + "\n";
+    return entries.empty() ? "" : entries.dump(2) + "\n";
 }
 
 }  // namespace gfxrepro::regression

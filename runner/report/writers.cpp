@@ -256,75 +256,93 @@ void writeTables(const fs::path& runDir, const std::vector<tables::Table>& table
     }
 }
 
-void writeClaims(const fs::path& runDir, const std::vector<records::CaseEnd>& cases,
-                 const std::vector<claims::ClaimResult>& results,
-                 const claims::ReportContext& context) {
-    writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));
-    writeFileAtomic(runDir / "junit.xml", junitXml(cases, results));
-}
-
 // JUnit.
 
 namespace {
 
-using Outcome = records::CaseEnd::Outcome;
+using Outcome = JunitTest::Outcome;
 
-std::vector<JunitTest> testsOf(const std::vector<records::CaseEnd>& cases) {
+JunitSuite suiteOf(const std::vector<records::CaseEnd>& cases) {
     std::map<std::string, int> known;
-    std::vector<JunitTest> tests;
+    JunitSuite suite{"cases", {}};
     for (const records::CaseEnd& one : cases) {
         // Those of several seeds of a scene have one title; others differ by what XML cannot write.
         const int count = ++known[escapeXml(one.title)];
-        tests.push_back({one.table, one.title + (count > 1 ? fmt::format(" ({})", count) : ""),
-                         one.outcome, one.text});
+        JunitTest test{one.table, one.title + (count > 1 ? fmt::format(" ({})", count) : "")};
+        using Ended = records::CaseEnd::Outcome;
+        if (one.outcome == Ended::Skipped) test.outcome = Outcome::Skipped;
+        if (one.outcome == Ended::Failed) test.outcome = Outcome::Broken;
+        test.type = one.text.substr(0, one.text.find(':'));
+        test.message = one.text;
+        test.seconds = one.seconds;
+        suite.tests.push_back(std::move(test));
     }
-    return tests;
+    return suite;
 }
 
-std::vector<JunitTest> testsOf(const std::vector<claims::ClaimResult>& claims) {
-    std::vector<JunitTest> tests;
+JunitSuite suiteOf(const std::vector<claims::ClaimResult>& claims) {
+    JunitSuite suite{"claims", {}};
     for (const claims::ClaimResult& claim : claims) {
         JunitTest test{claim.table, fmt::format("{} claim {}", claim.table, claim.id),
-                       Outcome::Skipped, ""};
-        if (claim.verdict == claims::Verdict::Holds) test.outcome = Outcome::Measured;
+                       Outcome::Skipped, "claim"};
+        if (claim.verdict == claims::Verdict::Holds) test.outcome = Outcome::Passed;
         if (claim.verdict == claims::Verdict::Fails) test.outcome = Outcome::Failed;
         test.message =
             fmt::format("{}: measured {}, required {}{}", claims::verdictName(claim.verdict),
                         claim.measured.empty() ? "nothing" : claim.measured, claim.required,
                         claim.reason.empty() ? "" : fmt::format(" ({})", claim.reason)) +
             (claim.because.empty() ? "" : fmt::format("; known: {}", claim.because));
-        tests.push_back(std::move(test));
+        suite.tests.push_back(std::move(test));
     }
-    return tests;
+    return suite;
+}
+
+/// Some readers show the attribute, others the text.
+std::string testXml(const JunitTest& test) {
+    const std::string begin =
+        fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
+                    escapeXml(test.group), escapeXml(test.name), test.seconds);
+    if (test.outcome == Outcome::Passed) return begin + "/>\n";
+    const std::string message = escapeXml(test.message);
+    if (test.outcome == Outcome::Skipped) {
+        return fmt::format("{}><skipped message=\"{}\"/></testcase>\n", begin, message);
+    }
+    const char* element = test.outcome == Outcome::Failed ? "failure" : "error";
+    return fmt::format("{0}><{1} message=\"{2}\" type=\"{3}\">{2}</{1}></testcase>\n", begin,
+                       element, message, escapeXml(test.type));
 }
 
 }  // namespace
 
-std::string junitSuite(std::string_view name, const std::vector<JunitTest>& tests) {
-    const auto count = [&](Outcome outcome) {
-        return std::ranges::count(tests, outcome, &JunitTest::outcome);
-    };
-    std::string text =
-        fmt::format("<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" skipped=\"{}\">\n", name,
-                    tests.size(), count(Outcome::Failed), count(Outcome::Skipped));
-    for (const JunitTest& test : tests) {
-        text += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escapeXml(test.group),
-                            escapeXml(test.name));
-        if (test.outcome == Outcome::Measured) {
-            text += "/>\n";
-            continue;
-        }
-        text += fmt::format("><{} message=\"{}\"/></testcase>\n",
-                            test.outcome == Outcome::Failed ? "failure" : "skipped",
-                            escapeXml(test.message));
-    }
-    return text + "</testsuite>\n";
+void writeClaims(const fs::path& runDir, const std::vector<records::CaseEnd>& cases,
+                 const std::vector<claims::ClaimResult>& results,
+                 const claims::ReportContext& context, const std::string& started) {
+    writeFileAtomic(runDir / "claims.csv", claimsCsv(results, context));
+    writeFileAtomic(runDir / "junit.xml", junitXml({suiteOf(cases), suiteOf(results)}, started));
 }
 
-std::string junitXml(const std::vector<records::CaseEnd>& cases,
-                     const std::vector<claims::ClaimResult>& results) {
-    return std::string(kXmlHead) + "<testsuites>\n" + junitSuite("cases", testsOf(cases)) +
-           junitSuite("claims", testsOf(results)) + "</testsuites>\n";
+std::string junitXml(const std::vector<JunitSuite>& suites, const std::string& started) {
+    std::string text = std::string(kXmlHead) + "<testsuites>\n";
+    // Without the Z of UTC, which Ant's schema does not take.
+    const std::string when = escapeXml(started.substr(0, started.find('Z')));
+    int id = 0;
+    for (const JunitSuite& suite : suites) {
+        std::map<Outcome, int> counts;
+        double seconds = 0.0;
+        for (const JunitTest& test : suite.tests) {
+            ++counts[test.outcome];
+            seconds += test.seconds;
+        }
+        text += fmt::format(
+            "<testsuite name=\"{0}\" package=\"gfxrepro\" id=\"{1}\" tests=\"{2}\" "
+            "failures=\"{3}\" errors=\"{4}\" skipped=\"{5}\" time=\"{6:.3f}\" "
+            "timestamp=\"{7}\" hostname=\"localhost\">\n<properties/>\n",
+            escapeXml(suite.name), id++, suite.tests.size(), counts[Outcome::Failed],
+            counts[Outcome::Broken], counts[Outcome::Skipped], seconds, when);
+        for (const JunitTest& test : suite.tests) text += testXml(test);
+        text += "<system-out/>\n<system-err/>\n</testsuite>\n";
+    }
+    return text + "</testsuites>\n";
 }
 
 }  // namespace gfxrepro::report

@@ -22,25 +22,29 @@ void writeTables(const std::filesystem::path& runDir, const std::vector<tables::
                  const std::vector<std::string>& runNotes = {});
 
 /// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
-/// its own. A case or claim that failed is a failure; a case that was left out and a claim that
-/// could not be judged are skipped.
+/// its own. A case that failed is an error, a claim that fails a failure; a case that was left out
+/// and a claim that could not be judged are skipped. `started` is when the run began, in UTC.
 void writeClaims(const std::filesystem::path& runDir, const std::vector<records::CaseEnd>& cases,
                  const std::vector<claims::ClaimResult>& results,
-                 const claims::ReportContext& context);
+                 const claims::ReportContext& context, const std::string& started);
 
 inline constexpr std::string_view kXmlHead = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-/// A test of a JUnit file: of what was measured nothing is said.
+/// A test of a JUnit file: of what passed nothing is said.
 struct JunitTest {
+    enum class Outcome { Passed, Skipped, Failed, Broken };
     std::string group;
     std::string name;
-    records::CaseEnd::Outcome outcome = records::CaseEnd::Outcome::Measured;
-    std::string message;
+    Outcome outcome = Outcome::Passed;
+    std::string type = {};  // of failure
+    std::string message = {};
+    double seconds = 0.0;
 };
-std::string junitSuite(std::string_view name, const std::vector<JunitTest>& tests);
-
-/// The text of junit.xml.
-std::string junitXml(const std::vector<records::CaseEnd>& cases,
-                     const std::vector<claims::ClaimResult>& results);
+struct JunitSuite {
+    std::string name;
+    std::vector<JunitTest> tests;
+};
+/// The text of a JUnit file, as the schemas of Ant and of Jenkins have it.
+std::string junitXml(const std::vector<JunitSuite>& suites, const std::string& started);
 
 /// A table as LaTeX: a macro for each number, and a tabular of these macros. Its head says how the
 /// numbers are cited. `runNotes` stand below the table: what holds of all numbers of the run, as

@@ -230,6 +230,19 @@ Completeness readCompleteness(const fs::path& runDir, const Plan* plan) {
 
 namespace {
 
+/// What a case took, by its id; nothing of one whose measurement is another's.
+std::map<std::string, double> secondsOfCases(const fs::path& runDir) {
+    std::map<std::string, double> seconds;
+    forEachEvent(runDir / "journal.jsonl", [&](const Json& event) {
+        if (event.value("event", "") != "case" || event.contains("as")) return;
+        if (!event.contains("cost")) return;
+        for (const char* part : {"load_s", "setup_s", "render_s", "record_s"}) {
+            seconds[event.value("case", "")] += event["cost"].value(part, 0.0);
+        }
+    });
+    return seconds;
+}
+
 /// How one unit of a case ended; nothing more than that where it has values.
 records::CaseEnd resultOf(const Case& item, const records::Record* row) {
     using Ended = records::CaseEnd::Outcome;
@@ -250,7 +263,7 @@ records::CaseEnd resultOf(const Case& item, const records::Record* row) {
 
 }  // namespace
 
-std::vector<records::CaseEnd> caseResults(const StoredRun& run) {
+std::vector<records::CaseEnd> caseResults(const StoredRun& run, const fs::path& runDir) {
     using Ended = records::CaseEnd::Outcome;
     const WorstRows worst = worstRows(run.records);
     std::map<std::string, SourceLocation> files;
@@ -271,6 +284,12 @@ std::vector<records::CaseEnd> caseResults(const StoredRun& run) {
         const auto [known, isNew] = results.try_emplace(item.id, result);
         if (isNew) order.push_back(item.id);
         if (weight(result) > weight(known->second)) known->second = std::move(result);
+    }
+    if (!runDir.empty()) {
+        for (const auto& [id, seconds] : secondsOfCases(runDir)) {
+            const auto found = results.find(id);
+            if (found != results.end()) found->second.seconds = seconds;
+        }
     }
     std::vector<records::CaseEnd> ordered;
     for (const std::string& id : order) ordered.push_back(std::move(results.at(id)));

@@ -74,8 +74,10 @@ void noteCompleteness(Json& manifest, const Completeness& counts);
 /// of another.
 Completeness readCompleteness(const std::filesystem::path& runDir, const Plan* plan = nullptr);
 
-/// How every case of the run's plan, or of its shard, ended: by its worst process.
-std::vector<records::CaseEnd> caseResults(const StoredRun& run);
+/// How every case of the run's plan, or of its shard, ended: by its worst process. Of a `runDir`
+/// that is given also how long each took, as its journal tells.
+std::vector<records::CaseEnd> caseResults(const StoredRun& run,
+                                          const std::filesystem::path& runDir = {});
 
 /// The cases that were under way at two ends of the runner, or more, that it did not say (no `end`,
 /// no `interrupted`), with a message that says so; by id. What counts is the work, not its name:

@@ -156,10 +156,9 @@ TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
     EXPECT_EQ(kept, 2U) << "a map a case";
     const std::string junit = readFile(out + "/junit.xml");
     EXPECT_THAT(junit, HasSubstr("<failure message=\"changed: FLIP "));
-    EXPECT_THAT(junit, HasSubstr("picture/flat, number=2\"")) << "cases with names of their own";
+    EXPECT_THAT(junit, HasSubstr(", number=2\"")) << "cases with names of their own";
     EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("[difference](pictures/sweep-mock/"));
-    EXPECT_THAT(readFile(out + "/benchmark.json"),
-                HasSubstr("picture/flat, number=2\",\n    \"unit\": \"FLIP\""));
+    EXPECT_THAT(readFile(out + "/benchmark.json"), testing::Not(HasSubstr("FLIP")));
 }
 
 TEST_F(Compare, PicturesThatABuildNoLongerRecordsAreAnAlarm) {

@@ -151,7 +151,7 @@ TEST_F(Pictures, AChangedOneIsKeptWithTheMapOfDifferences) {
                                                 "[after](pictures/p-1/b-flat0-after.png), "
                                                 "[difference](pictures/p-1/b-flat0-flip.png))"));
     EXPECT_THAT(junitXml(comparison), HasSubstr("<failure message=\"changed: FLIP "));
-    EXPECT_THAT(smallerIsBetterJson({changed}), HasSubstr("\"unit\": \"FLIP\""));
+    EXPECT_EQ(smallerIsBetterJson({changed}), "") << "no time";
 }
 
 TEST_F(Pictures, ALargeDifferenceOfOneValueIsFoundByItself) {

@@ -45,8 +45,11 @@ TEST(Summary, WhatIsNotThereHasNoNumber) {
 
 TEST(Summary, JUnitFailsOnAlarmsOnly) {
     const std::string xml = junitXml({differences()});
-    EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" skipped=\"1\""), std::string::npos) << xml;
-    EXPECT_NE(xml.find("<failure message=\"slower 1.200 [1.100, 1.300]\"/>"), std::string::npos)
+    EXPECT_NE(xml.find("tests=\"3\" failures=\"1\" errors=\"0\" skipped=\"1\""), std::string::npos)
+        << xml;
+    EXPECT_NE(xml.find("<failure message=\"slower 1.200 [1.100, 1.300]\" type=\"slower\">slower "
+                       "1.200 [1.100, 1.300]</failure>"),
+              std::string::npos)
         << xml;
     EXPECT_NE(xml.find("name=\"p/1 mock &lt;a&gt; wall_time_ms\""), std::string::npos) << xml;
 }
@@ -62,7 +65,8 @@ TEST(Summary, WhatNeitherSideHasIsCountedAndSkipped) {
               std::string::npos)
         << markdown(both);
     const std::string xml = junitXml(both);
-    EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" skipped=\"2\""), std::string::npos) << xml;
+    EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"2\""), std::string::npos)
+        << xml;
     EXPECT_NE(xml.find("<skipped message=\"void on both sides: blank \"/>"), std::string::npos)
         << xml;
 }
@@ -79,14 +83,35 @@ TEST(Summary, AStepToSlowerIsAnAlarm) {
     EXPECT_TRUE((Comparison{differences()}).isAlarm());
     const Comparison both{{}, {slower, faster}};
     EXPECT_NE(markdown(both).find("since night 19 of 30"), std::string::npos) << markdown(both);
-    EXPECT_NE(junitXml(both).find("tests=\"2\" failures=\"1\" skipped=\"0\""), std::string::npos)
+    EXPECT_NE(junitXml(both).find("tests=\"2\" failures=\"1\" errors=\"0\" skipped=\"0\""),
+              std::string::npos)
         << junitXml(both);
+}
+
+/// A name is that of a history: it has what tells series apart, and no more.
+TEST(Summary, ParametersAreNoPartOfABenchmarksName) {
+    std::vector<Difference> two(2, differences()[0]);
+    two[0].key.params = R"({"bias":0.1,"samples":4})";
+    two[1].key.params = R"({"bias":0.1,"samples":8})";
+    const auto json = nlohmann::json::parse(smallerIsBetterJson(two));
+    ASSERT_EQ(json.size(), 2U);
+    EXPECT_EQ(json[0]["name"], "p/1 mock <a> wall_time_ms, samples=4");
+    EXPECT_EQ(json[1]["name"], "p/1 mock <a> wall_time_ms, samples=8");
+    EXPECT_EQ(json[0]["extra"], two[0].key.params);
+}
+
+TEST(Summary, WithoutTimesThereIsNoBenchmark) {
+    Difference picture = differences()[0];
+    picture.key.metric = kPictureMetric;
+    picture.picture = PictureError{0.5, 0.5};
+    EXPECT_EQ(smallerIsBetterJson({picture}), "");
 }
 
 TEST(Summary, JsonHoldsTimes) {
     const auto json = nlohmann::json::parse(smallerIsBetterJson(differences()));
     ASSERT_EQ(json.size(), 3U);
     EXPECT_EQ(json[0]["name"], "p/1 mock <a> wall_time_ms");
+    EXPECT_EQ(json[0]["extra"], "{}");
     EXPECT_EQ(json[0]["value"], 12.0);
     EXPECT_EQ(json[0]["unit"], "ms");
 }

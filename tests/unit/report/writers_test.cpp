@@ -205,11 +205,11 @@ TEST(Writers, ClaimFiles) {
     using Outcome = records::CaseEnd::Outcome;
     const std::vector<records::CaseEnd> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
-        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>"},
+        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>", {}, 0.25},
         {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},
         {"zju2005/9.9", "zju2005/9.9 text=\x01", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 text=\x02", Outcome::Measured}};
-    writeClaims(run.folder.path(), cases, results, kWritersContext);
+    writeClaims(run.folder.path(), cases, results, kWritersContext, "2026-11-30T17:49:34Z");
     EXPECT_EQ(
         run.read("claims.csv"),
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
@@ -238,32 +238,39 @@ TEST(Writers, ClaimFiles) {
     EXPECT_EQ(kept[1].restsOn, "not tried: holds then");
     EXPECT_EQ(kept[0].rows, "1 of 4 values of scene");
     EXPECT_EQ(kept[1].sameAs, "zju2005/1 A");
+    const std::string failed =
+        "fails: measured 8 [8, 8], required draw_ms ≤ 1 (by the clock: no CPU time was recorded of "
+        "these); known: slow, measured";
     EXPECT_EQ(
         run.read("junit.xml"),
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
         "<testsuites>\n"
-        "<testsuite name=\"cases\" tests=\"5\" failures=\"1\" skipped=\"1\">\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\">"
-        "<failure message=\"crash: &lt;11&gt;\"/></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\">"
+        "<testsuite name=\"cases\" package=\"gfxrepro\" id=\"0\" tests=\"5\" failures=\"0\" "
+        "errors=\"1\" skipped=\"1\" time=\"0.250\" timestamp=\"2026-11-30T17:49:34\" "
+        "hostname=\"localhost\">\n<properties/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a\" time=\"0.000\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\" time=\"0.250\">"
+        "<error message=\"crash: &lt;11&gt;\" type=\"crash\">crash: &lt;11&gt;</error></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\" time=\"0.000\">"
         "<skipped message=\"missing: too slow\"/></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD (2)\"/>\n"
-        "</testsuite>\n"
-        "<testsuite name=\"claims\" tests=\"3\" failures=\"1\" skipped=\"1\">\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim A\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim B\"><failure "
-        "message=\"fails: "
-        "measured "
-        "8 [8, 8], required draw_ms ≤ 1 (by the clock: no CPU time was recorded of these); known: "
-        "slow, measured\"/></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim C\"><skipped "
-        "message=\"unmeasured: "
-        "measured nothing, required draw_ms ≤ 1 (draw_ms at scene=models/lost: crash (signal "
-        "&lt;11&gt;))\"/></testcase>\n"
-        "</testsuite>\n"
-        "</testsuites>\n");
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD\" "
+        "time=\"0.000\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD (2)\" "
+        "time=\"0.000\"/>\n"
+        "<system-out/>\n<system-err/>\n</testsuite>\n"
+        "<testsuite name=\"claims\" package=\"gfxrepro\" id=\"1\" tests=\"3\" failures=\"1\" "
+        "errors=\"0\" skipped=\"1\" time=\"0.000\" timestamp=\"2026-11-30T17:49:34\" "
+        "hostname=\"localhost\">\n<properties/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim A\" time=\"0.000\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim B\" time=\"0.000\">"
+        "<failure message=\"" +
+            failed + "\" type=\"claim\">" + failed +
+            "</failure></testcase>\n"
+            "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim C\" time=\"0.000\">"
+            "<skipped message=\"unmeasured: measured nothing, required draw_ms ≤ 1 (draw_ms at "
+            "scene=models/lost: crash (signal &lt;11&gt;))\"/></testcase>\n"
+            "<system-out/>\n<system-err/>\n</testsuite>\n"
+            "</testsuites>\n");
 }
 
 }  // namespace
