@@ -74,7 +74,7 @@ inline constexpr int kMostSceneSample = 999;  // of `measure.scene_seeds`
 
 /// One case. Of a plan it is complete: a worker needs nothing else.
 struct Case {
-    std::string id;          // 12 hexadecimal digits of the content hash
+    std::string id;          // c and 12 hexadecimal digits of the content hash
     std::string experiment;  // "zju2005/2.1"
     std::string technique;
     Node program;                    // null, or the config's `program`

@@ -24,8 +24,8 @@ Plan planWithUnreadExperiments(const std::filesystem::path& path);
 /// (scene::isSceneKey), by their names; none that is empty.
 std::map<std::string, Node> scenesOf(const Case& item);
 
-/// The first 12 digits of the hash of everything that the case's results depend on: `written` is
-/// the case as plan.json has it, whatever its id.
+/// "c", and the first 12 digits of the hash of everything that the case's results depend on:
+/// `written` is the case as plan.json has it, whatever its id.
 std::string caseId(const Case& item, nlohmann::ordered_json written, const Plan& plan);
 
 /// The hash of a plan whose experiments have these documents.

@@ -5,6 +5,7 @@ import csv
 import math
 import os
 import pathlib
+import re
 import sqlite3
 import subprocess
 import tempfile
@@ -93,11 +94,15 @@ class Load(unittest.TestCase):
         medians = joined[joined["metric"] == "number"].groupby(run.axes["sweep/mine"])["value"].median()
         self.assertEqual(medians.to_dict(), {(1, "ok"): 1.0, (2, "ok"): 2.0, (3, "ok"): 3.0})
         self.assertTrue(math.isnan(run.records.loc[run.records["status"] == "error", "value"].iloc[0]))
-        with contextlib.closing(sqlite3.connect(":memory:")) as database:  # as python/README.md has it
-            run.cases.to_sql("cases", database, index=False)
-            run.records.to_sql("records", database, index=False)
-            found = database.execute("SELECT number, typeof(number), value FROM cases JOIN records USING (case_id) "
+        readme = (pathlib.Path(__file__).parents[2] / "python" / "README.md").read_text()
+        lines = next(block for block in re.findall(r"```python\n(.*?)```", readme, re.DOTALL) if "sqlite3" in block)
+        names = {"run": run, "sqlite3": sqlite3}
+        exec(lines.replace("run.sqlite", ":memory:"), names)  # pylint: disable=exec-used
+        with contextlib.closing(names["database"]) as database:
+            found = database.execute("SELECT number, typeof(number), value FROM measured "
                                      "WHERE metric = 'number' ORDER BY number").fetchall()
+            with self.assertRaises(sqlite3.IntegrityError):
+                database.execute("INSERT INTO cases SELECT * FROM cases")
         self.assertEqual(found, [(number, "integer", float(number)) for number in (1, 2, 3)])
 
     def test_a_cut_unit_is_left_out_and_a_broken_one_is_named(self):
@@ -118,7 +123,7 @@ class Load(unittest.TestCase):
                 (copy / "records.csv").write_bytes(content[:size])
                 self.assertEqual(gfxrepro.load(copy, as_frames=False).records, [], content[:size][-30:])
             (copy / "records.csv").write_text("".join([lines[0], *lines[2:]]))
-            with self.assertRaisesRegex(ValueError, r"records.csv:2: case [0-9a-f]{12}, process 0 has \d+ of \d+ rows"):
+            with self.assertRaisesRegex(ValueError, r"records.csv:2: case c[0-9a-f]{12}, process 0 has \d+ of \d+ rows"):
                 gfxrepro.load(copy, as_frames=False)
             (copy / "records.csv").write_text("".join(lines))
             self.assertEqual(len(gfxrepro.load(copy, as_frames=False).records), whole)

@@ -486,6 +486,26 @@ TEST(Plan, KeepsWhatIsAssumed) {
     EXPECT_TRUE(kept.isBound);
 }
 
+/// Digits alone are a number to who reads a table of cases: 46e288818872 is one beyond all.
+TEST(Plan, IdsBeginWithALetterAndThoseOfBeforeAreRead) {
+    const Ledger ledger;
+    Plan plan = makePlan({ledger.load("sweep: {bias: [0.25, 0.5]}\n")}, ledger.catalog(),
+                         kTechniques, "full", "software", 1);
+    const auto file = ledger.folder.path() / "plan.json";
+    for (Case& item : plan.cases) {
+        EXPECT_EQ(item.id.size(), 13U);
+        EXPECT_EQ(item.id.front(), 'c');
+        item.id.erase(0, 1);
+    }
+    plan.writeFile(file);
+    const Plan read = Plan::fromJsonFile(file);
+    ASSERT_EQ(read.cases.size(), 2U);
+    EXPECT_EQ(read.cases[1].id, plan.cases[1].id);
+    std::swap(plan.cases[0].id, plan.cases[1].id);
+    plan.writeFile(file);
+    EXPECT_THROW(Plan::fromJsonFile(file), Error);
+}
+
 /// Before anything is measured: a larger one would be written and never read.
 TEST(Plan, IsNoLargerThanIsRead) {
     const Ledger ledger;
