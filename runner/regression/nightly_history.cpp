@@ -305,9 +305,11 @@ std::string changesHtml(const MachineHistory& history, std::size_t machine,
     }
     if (rows.empty()) return "<p>No series changed.</p>\n";
     std::string html =
-        "<div class=\"scroll\"><table><thead><tr><th>since</th><th></th><th>series</th><th "
-        "class=\"num\">after / before</th><th>last commit before</th><th>first commit after</th>"
-        "<th class=\"num\">chance</th></tr></thead>\n<tbody>\n";
+        "<div class=\"scroll\"><table><thead><tr><th scope=\"col\">since</th><td></td><th "
+        "scope=\"col\">series</th><th scope=\"col\" "
+        "class=\"num\">after / before</th><th scope=\"col\">last commit before</th><th "
+        "scope=\"col\">first commit after</th>"
+        "<th scope=\"col\" class=\"num\">chance</th></tr></thead>\n<tbody>\n";
     for (const auto& [night, text] : rows) html += text;
     return html + "</tbody></table></div>\n";
 }
@@ -368,7 +370,8 @@ std::string curveHtml(const MachineHistory& history, const SeriesHistory& series
 std::string nightsHtml(const MachineHistory& history) {
     std::string html =
         "<details class=\"cases\"><summary>Nights and commits</summary>\n<div class=\"scroll\">"
-        "<table><thead><tr><th>night</th><th>commit</th></tr></thead>\n<tbody>\n";
+        "<table><thead><tr><th scope=\"col\">night</th><th scope=\"col\">commit</th></tr></thead>\n"
+        "<tbody>\n";
     for (const NightOf& night : history.nights) {
         html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escapeXml(night.time),
                             escapeXml(night.commit));

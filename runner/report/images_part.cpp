@@ -412,16 +412,17 @@ class Pictures {
             data, shot.thumbnail, escapeXml(title + " · " + nameOf(shot.name)), shot.width,
             shot.height, escapeXml(says));
         if (!shot.flip.empty()) {
-            html += fmt::format(
-                "<button class=\"error\" data-of=\"{}\"><img src=\"{}\" alt=\"where {} differs "
+            html = fmt::format(
+                "<div>{}</figure>\n<figure class=\"of-error\"><button class=\"error\" "
+                "data-of=\"{}\"><img src=\"{}\" alt=\"where {} differs "
                 "from "
                 "{}\" width=\"{}\" height=\"{}\" loading=\"lazy\"></button><figcaption>error: FLIP "
                 "{:.4f} to {}</figcaption>\n",
-                escapeXml(idOf(i)), shot.flip, escapeXml(nameOf(shot.name)),
+                html, escapeXml(idOf(i)), shot.flip, escapeXml(nameOf(shot.name)),
                 escapeXml(nameOf(shot.truth)), shot.width, shot.height, shot.flipMean,
                 escapeXml(nameOf(shot.truth)));
         }
-        return html + "</figure>\n";
+        return html + (shot.flip.empty() ? "</figure>\n" : "</figure></div>\n");
     }
 
     /// What stands under a picture: its name, where that tells more than its column, and its case
@@ -530,7 +531,9 @@ std::string imagesHtml(const Page& page, const Model& model) {
         html += Pictures(page, run, model).html();
     }
     if (html.empty()) return "";
-    std::string says = "A click on a picture lays it beside its truth or another one.";
+    std::string says =
+        "<span class=\"on-screen\">A click on a picture lays it beside its truth or another "
+        "one.</span>";
     const GalleryPlace& place = model.places.front();
     if (place.embedding == GalleryPlace::Embedding::Reduced) {
         says += fmt::format(

@@ -135,9 +135,9 @@ std::vector<std::pair<const char*, std::string>> factsOf(const ReportRun& run) {
 std::string factsHtml(const Model& model) {
     std::string html = "<div class=\"scroll\"><table class=\"facts\">\n";
     if (model.isComparison()) {
-        html += "<thead><tr><th></th>";
+        html += "<thead><tr><td></td>";
         for (std::size_t i = 0; i < model.runs.size(); ++i) {
-            html += fmt::format("<th>{}</th>", Model::letter(i));
+            html += fmt::format("<th scope=\"col\">{}</th>", Model::letter(i));
         }
         html += "</tr></thead>\n";
     }

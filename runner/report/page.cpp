@@ -230,7 +230,8 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
     if (assumptions.empty()) return "";
     std::string html =
         "<h3>Assumptions</h3>\n<div class=\"scroll\"><table class=\"assumed\"><thead><tr>"
-        "<th>what the paper left open</th><th>taken</th><th>range</th><th>why</th></tr></thead>\n"
+        "<th scope=\"col\">what the paper left open</th><th scope=\"col\">taken</th>"
+        "<th scope=\"col\">range</th><th scope=\"col\">why</th></tr></thead>\n"
         "<tbody>\n";
     for (const config::Assumption& assumption : assumptions) {
         const auto text = [](const Node& node) {

@@ -8,11 +8,16 @@
 
   const pages = all('.page');
   const nav = one('nav.pages');
+  const title = document.title;
 
   function turn() {
     const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
     const page = (target && target.closest('.page')) || pages[0];
     pages.forEach(p => p.classList.toggle('current', p === page));
+    const heading = one('h1, h2', page);
+    heading.setAttribute('aria-level', 1);  // of what is shown it is the first; a table's page has no h2 below it
+    if (page.id !== 'overview') all('h3, h4', page).forEach(h => h.setAttribute('aria-level', h.tagName[1] - 1));
+    document.title = page === pages[0] ? title : `${heading.textContent} · ${title}`;
     const at = pages.indexOf(page);
     const link = (anchor, other) => {
       anchor.classList.toggle('off', !other);
@@ -228,7 +233,7 @@
     one('.caption', panes[1]).textContent = panes[1].caption;
     field('gainText').value = gain();
     const k = gain();
-    for (const channel of all('svg .gain *', viewer)) {  // k (1 − v)
+    for (const channel of all('[id^=gain-] *', viewer)) {  // k (1 − v)
       channel.setAttribute('slope', -k);
       channel.setAttribute('intercept', k);
     }
@@ -254,6 +259,7 @@
     }
     const pane = panes[0].getBoundingClientRect();
     handle.style.left = `${border * pane.width}px`;
+    handle.setAttribute('aria-valuenow', Math.round(100 * border));
     const cut = (border * pane.width - Math.round(view.x)) / view.scale;
     one('img.b', panes[0]).style.clipPath = mode() === 'slider' ? `inset(0 0 0 ${Math.max(0, cut)}px)` : '';
     field('zoomText').value = `${Math.round(view.scale * 100)} %`;
@@ -318,8 +324,23 @@
   }
 
   function onKey(event) {
-    if (event.target.matches('select, input[type=range]') && event.key.startsWith('Arrow')) return;
+    if (event.target.matches('select')) return;  // it finds names by their letters
+    const along = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]}[event.key];
+    if (along && event.target.matches('input')) return;
     const box = panes[0].getBoundingClientRect();
+    if (along && event.shiftKey) {
+      view.x -= along[0] * box.width / 8;
+      view.y -= along[1] * box.height / 8;
+      place();
+      event.preventDefault();
+      return;
+    }
+    if (along && event.target === handle) {
+      border = Math.min(1, Math.max(0, border + along[0] / 50));
+      place();
+      event.preventDefault();
+      return;
+    }
     const keys = {
       f: () => { isFlipped = !isFlipped; show(); },
       0: fit,
@@ -389,6 +410,51 @@
       if (map) openViewer(document.getElementById(map.dataset.of), 'flip-map');
     });
   }
+
+  // On paper a table is as large as its page lets it be: in CSS pixels between the margins of A4, or of Letter across.
+  const UPRIGHT = 680, ACROSS = 940;
+  const PRINTED = 0.7, LEAST = 0.5;  // of the size on a screen, where it fits; below it a table lies across
+
+  function scaleForPaper() {
+    document.body.classList.replace('paged', 'for-paper');  // what is not shown has no width
+    const tables = all('.scroll > table');
+    tables.forEach(t => { t.style.width = 'min-content'; });
+    const widths = tables.map(t => t.offsetWidth);
+    tables.forEach((t, i) => {
+      t.style.width = '';
+      const isAcross = UPRIGHT / widths[i] < LEAST;
+      t.parentElement.classList.toggle('across', isAcross);
+      t.style.setProperty('--printed', Math.min(PRINTED, (isAcross ? ACROSS : UPRIGHT) / widths[i]));
+    });
+  }
+
+  // Tables share most of what their paper left open: on paper each of it stands once.
+  function sayAssumptionsOnce() {
+    const known = new Set();
+    for (const table of all('.assumed')) {
+      const again = [];
+      for (const row of all('tbody tr', table)) {
+        const isAgain = known.has(row.innerHTML);
+        known.add(row.innerHTML);
+        row.classList.toggle('on-screen', isAgain);
+        if (isAgain) again.push(row.cells[0].textContent);
+      }
+      table.classList.toggle('on-screen', again.length === all('tbody tr', table).length);
+      if (again.length === 0) continue;
+      const line = document.createElement('p');
+      line.className = 'small of-paper';
+      line.textContent = 'As said before: ' + again.join(', ') + '.';
+      table.parentElement.after(line);
+    }
+  }
+  addEventListener('beforeprint', () => {
+    scaleForPaper();
+    sayAssumptionsOnce();
+  });
+  addEventListener('afterprint', () => {
+    document.body.classList.replace('for-paper', 'paged');
+    all('.of-paper').forEach(line => line.remove());
+  });
 
   document.body.classList.add('paged');
   nav.hidden = false;

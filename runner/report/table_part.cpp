@@ -186,9 +186,10 @@ std::string headHtml(const Overlay& overlay, bool isComparison) {
         const std::size_t width = overlay.widthOf(column.label);
         html += columnHeadHtml(column, heads[i].own, width, hasSources && width == 1 ? 2 : 1);
         if (!isGroup(column)) continue;
-        if (overlay.hasPrinted(column.label)) below += "<th class=\"sub\">printed</th>";
+        if (overlay.hasPrinted(column.label))
+            below += "<th class=\"sub\" scope=\"col\">printed</th>";
         for (const std::size_t run : overlay.runs()) {
-            below += fmt::format("<th class=\"sub\">{}</th>",
+            below += fmt::format("<th class=\"sub\" scope=\"col\">{}</th>",
                                  isComparison ? Model::letter(run) : "measured");
         }
     }
@@ -355,7 +356,10 @@ std::string smallPrintHtml(const Page& page) {
     std::string says = joined(parts, " · ");
     if (!says.empty()) says = "Small print under a number: " + says + ". ";
     return fmt::format(
-        "<p class=\"soft small\">{}Point at a row for its cases; click to keep them.</p>\n", says);
+        "<p class=\"soft small\">{}<span class=\"on-screen\">Point at a row for its cases; click "
+        "to "
+        "keep them.</span></p>\n",
+        says);
 }
 
 /// Printed rows that this run does not have, folded.

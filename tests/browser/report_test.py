@@ -243,6 +243,19 @@ class Report(unittest.TestCase):
         self.browser.type(".filters [name=text]", "GPU")
         self.assertEqual(self.shown(".said .claim"), 2)
 
+    def test_each_page_has_a_title_of_its_own_and_a_first_heading(self):
+        first = "return [document.title, document.querySelectorAll('.current h1, .current [aria-level=\"1\"]').length]"
+        titles = set()
+        for fragment in ("", "#demo2026-1", "#demo2026-2"):
+            self.open(fragment)
+            title, count = self.browser.script(first)
+            titles.add(title)
+            self.assertEqual(count, 1)
+            levels = self.browser.script("return [...document.querySelectorAll('.current :is(h1, h2, h3, h4)')]"
+                                         ".map(h => Number(h.ariaLevel || h.tagName[1]))")
+            self.assertTrue(all(b - a <= 1 for a, b in zip([0, *levels], levels)), f"{fragment}: none is left out: {levels}")
+        self.assertEqual(len(titles), 3, titles)
+
     def test_pages_turn(self):
         self.open()
         self.browser.click(".said h4 a[href='#demo2026-1']")
@@ -337,6 +350,36 @@ class Report(unittest.TestCase):
         self.browser.drag(".handle", -500, 0)
         self.near(self.pixels("viewer-slider-dragged")[0], LIGHT)
 
+    def test_the_viewer_by_keys_alone(self):
+        left, right, shift = "\ue012", "\ue014", "\ue008"
+        focus = "document.querySelector(arguments[0]).focus()"
+        value = "return document.querySelector('#viewer .bar').elements[arguments[0]].value"
+        at = "return document.querySelector('.layers').style.transform"
+        self.view("c1")
+        shot = self.browser.script(value, "a")
+        self.browser.script(focus, "#viewer [value=side]")
+        self.browser.press(right)
+        self.assertEqual((self.browser.script(value, "mode"), self.browser.script(value, "a")), ("flip", shot))
+        self.browser.script(focus, "#viewer [name=a]")
+        for key in "f3":  # may begin the name of a picture
+            self.browser.press(key)
+        self.assertEqual(self.browser.script(value, "mode"), "flip")
+        self.assertEqual(self.shown(".stage.flipped"), 0)
+        self.browser.script(focus, "#viewer [name=pixels]")
+        before = self.browser.script(at)
+        self.browser.press(right, held=shift)
+        moved = self.browser.script(at)
+        self.assertNotEqual(moved, before)
+        self.browser.press(left, held=shift)
+        self.assertEqual(self.browser.script(at), before)
+        self.browser.press("3")
+        self.browser.script(focus, ".handle")
+        for _ in range(25):
+            self.browser.press(left)
+        self.assertEqual(self.browser.script("return document.querySelector('.handle').ariaValueNow"), "0")
+        self.near(self.pixels("viewer-slider-by-keys")[0], LIGHT)
+        self.assertGreater(self.shown(".keys kbd"), 5)
+
     def test_error_maps_show_sign_and_gain(self):
         grey = (222, 222, 222)
         for case, is_darker in (("c1", True), ("c2", False)):
@@ -417,6 +460,27 @@ class Report(unittest.TestCase):
         self.assertEqual(self.shown(".page"), 3, "print has all pages")
         self.assertEqual(self.shown("nav, .filters, .cases-shown"), 0)
         self.assertGreater(self.browser.script(luminance, "backgroundColor"), 240)
+
+    def test_on_paper_no_table_is_cut_and_assumptions_stand_once(self):
+        self.open("#demo2026-1")
+        self.browser.script("for (const row of document.querySelectorAll('#demo2026-1 .results tr, #demo2026-2 .results tr')) {"
+                            "  const count = row.closest('#demo2026-1') ? 20 : 60;"
+                            "  for (let i = 0; i < count; ++i) row.append(row.lastElementChild.cloneNode(true)); }"
+                            "dispatchEvent(new Event('beforeprint'))")
+        self.browser.resize(680, 900)
+        self.browser.emulate(media="print")
+        widths = self.browser.script("return [...document.querySelectorAll('.scroll > table')].filter(t => t.checkVisibility())"
+                                     ".map(t => [t.getBoundingClientRect().width, t.parentElement.classList.contains('across')])")
+        self.assertGreater(len(widths), 3)
+        for width, is_across in widths:
+            self.assertLessEqual(width, 940.5 if is_across else 680.5)
+        self.assertGreater(len([width for width, is_across in widths if is_across]), 0)
+        self.assertEqual(self.shown(".assumed"), 1)
+        self.assertIn("As said before: view.", self.browser.script("return document.querySelector('#demo2026-2').innerText"))
+        self.assertNotIn("Point at a row", self.browser.script("return document.body.innerText"))
+        self.browser.script("dispatchEvent(new Event('afterprint'))")
+        self.browser.emulate()
+        self.assertEqual((self.shown(".page"), self.shown(".of-paper")), (1, 0))
 
     def test_many_images_are_loaded_as_they_come_into_sight(self):
         folder = OUT / "many"

@@ -114,9 +114,11 @@ class Browser:
         self._call("POST", "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions,
                                                      "parameters": {"pointerType": "mouse"}}]})
 
-    def press(self, key):
+    def press(self, key, held=""):
+        """A key; while another is held."""
+        keys = [*held, key]
         self._call("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": [
-            {"type": "keyDown", "value": key}, {"type": "keyUp", "value": key}]}]})
+            *({"type": "keyDown", "value": k} for k in keys), *({"type": "keyUp", "value": k} for k in reversed(keys))]}]})
 
     def type(self, selector, text):
         self._call("POST", f"/element/{self.find(selector)}/value", {"text": text})

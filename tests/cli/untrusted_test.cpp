@@ -476,7 +476,7 @@ TEST_F(Untrusted, AReportOfManyRuns) {
     command.front() = "report";
     command.insert(command.end(), {"--out", out + ".html"});
     EXPECT_EQ(mockGfxrepro(command).exitCode, 0);
-    EXPECT_THAT(readFile(out + ".html"), HasSubstr("<th>AA</th>"));
+    EXPECT_THAT(readFile(out + ".html"), HasSubstr("<th scope=\"col\">AA</th>"));
 }
 
 }  // namespace

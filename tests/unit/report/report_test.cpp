@@ -581,8 +581,9 @@ TEST_F(Report, RunsStandSideBySide) {
     runs[1].tables[0].notes.emplace_back("Noise of this one.");
     writeReport(out.path() / "both.html", runs);
     const std::string html = readFile(out.path() / "both.html");
-    EXPECT_THAT(html, HasSubstr("<th class=\"sub\">printed</th><th class=\"sub\">A</th>"
-                                "<th class=\"sub\">B</th>"));
+    EXPECT_THAT(html, HasSubstr("<th class=\"sub\" scope=\"col\">printed</th>"
+                                "<th class=\"sub\" scope=\"col\">A</th>"
+                                "<th class=\"sub\" scope=\"col\">B</th>"));
     EXPECT_THAT(html,
                 HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
         << "claim A, 8 against 12";
