@@ -14,6 +14,8 @@ namespace {
 
 using namespace types;
 
+/// Axes that are parameters of a generated scene (kSceneAxisPrefix).
+constexpr const char* kOfScene = "^scene[.]";
 constexpr std::array<std::string_view, 4> kKinds = {"experiment", "preset", "scene", "documents"};
 
 /// A reference swallows what stands beside it in draft 7.
@@ -198,7 +200,25 @@ void defineTechnique(const SchemaNames::TechniqueNames& technique, Json& definit
                                                {"additionalProperties", false}};
     definitions["sweep_" + technique.name] = {{"type", {"object", "null"}},
                                               {"properties", std::move(axes)},
+                                              {"patternProperties", {{kOfScene, anything()}}},
                                               {"additionalProperties", false}};
+}
+
+/// Whether a config is of a technique: it says so, or what it extends does, a preset that is named
+/// after its technique.
+Json isOfTechnique(const std::string& name) {
+    std::string preset = name;
+    std::ranges::replace(preset, '_', '-');
+    const Json file = {{"type", "string"}, {"pattern", fmt::format("^presets/{}[.-]", preset)}};
+    const Json extended = anyOf({file, {{"type", "array"}, {"contains", file}}});
+    const Json says = {{"properties", {{"technique", {{"const", name}}}}},
+                       {"required", Json::array({"technique"})}};
+    const Json saysItself = anyOf(
+        {{{"required", Json::array({"technique"})}}, {{"required", Json::array({"program"})}}});
+    return anyOf({says,
+                  {{"properties", {{"extends", extended}}},
+                   {"required", Json::array({"extends"})},
+                   {"not", saysItself}}});
 }
 
 /// `params` and `sweep` hold what the technique declares, in profiles too.
@@ -209,9 +229,7 @@ Json conditionOf(const SchemaNames::TechniqueNames& technique) {
     Json properties = measured;
     properties["layout"] = refTo("layout_" + technique.name);
     properties["profiles"] = {{"additionalProperties", std::move(profile)}};
-    return {{"if",
-             {{"properties", {{"technique", {{"const", technique.name}}}}},
-              {"required", Json::array({"technique"})}}},
+    return {{"if", isOfTechnique(technique.name)},
             {"then", {{"properties", std::move(properties)}}}};
 }
 

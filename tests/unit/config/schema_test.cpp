@@ -332,11 +332,11 @@ TEST_F(ExperimentTest, ReaderAndSchemaTakeTheSameNumbers) {
 TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {
     const JsonSchema schema("experiment");
     const std::string head = "table: p/1\ntitle: t\ntechnique: voxelization\n";
-    for (const char* good :
-         {"params: {resolution: 64}", "params: {method: worksheet}",
-          "sweep: {resolution: [64, 128]}", "sweep: {resolution: {log2: [64, 128]}}",
-          "profiles: {quick: {sweep: {resolution: [64]}}}",
-          "profiles: {quick: {sweep: null, params: {resolution: null}}}"}) {
+    for (const char* good : {"params: {resolution: 64}", "params: {method: worksheet}",
+                             "sweep: {resolution: [64, 128]}", "sweep: {scene.blades: [1, 2]}",
+                             "sweep: {resolution: {log2: [64, 128]}}",
+                             "profiles: {quick: {sweep: {resolution: [64]}}}",
+                             "profiles: {quick: {sweep: null, params: {resolution: null}}}"}) {
         EXPECT_EQ(schema.complaintAbout(head + good), "") << good;
     }
     for (const char* bad :
@@ -347,8 +347,32 @@ TEST(JsonSchema, KnowsTheParametersOfEachTechnique) {
         EXPECT_NE(schema.complaintAbout(head + bad), "") << bad;
     }
     EXPECT_NE(schema.complaintAbout("table: p/1\ntitle: t\ntechnique: voxelisation\n"), "");
-    // Where the technique comes from a file that is extended, nothing is known of parameters.
+    // Where the technique comes from a file of one's own, nothing is known of parameters.
     EXPECT_EQ(schema.complaintAbout("table: p/1\nextends: x.yaml\nparams: {resolutoin: 1}"), "");
+}
+
+TEST(JsonSchema, KnowsTheTechniqueOfAPresetByItsName) {
+    const JsonSchema schema("experiment");
+    const std::string head = "table: p/1\nextends: ";
+    const std::string bias = "\nparams: {slope_bias: 1}", typo = "\nparams: {slop_bias: 1}";
+    for (const char* extended :
+         {"presets/shadow-mapping.yaml", "[presets/timing.yaml, presets/shadow-mapping.yaml]",
+          "[presets/shadow-mapping-mine.yaml]"}) {
+        EXPECT_EQ(schema.complaintAbout(head + extended + bias), "") << extended;
+        EXPECT_NE(schema.complaintAbout(head + extended + typo), "") << extended;
+        EXPECT_NE(schema.complaintAbout(head + extended +
+                                        "\nlayout: {columns: {w: {metric: wrnog_pct}}}"),
+                  "")
+            << extended;
+    }
+    for (const char* other : {"presets/timing.yaml", "presets/shadow-mappings.yaml",
+                              "presets/shadow-mapping.yaml\nprogram: {command: x}",
+                              "presets/shadow-mapping.yaml\ntechnique: external"}) {
+        EXPECT_EQ(schema.complaintAbout(head + other + typo), "") << other;
+    }
+    // A preset may be of one that it extends.
+    const JsonSchema preset("preset");
+    EXPECT_NE(preset.complaintAbout("extends: presets/shadow-mapping.yaml" + typo), "");
 }
 
 TEST(JsonSchema, OfAPresetIsAPartOfTheExperiments) {
