@@ -76,7 +76,8 @@ TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
     const fs::path config =
         writeMockConfig(folder, "measure: {lane: timing, processes: 1, repeats: 2}\n");
     const auto [a, b] = twoRuns(config);
-    endedWith(0, mockGfxrepro({"compare", a, b, "--out", out}));
+    EXPECT_THAT(endedWith(0, mockGfxrepro({"compare", a, b, "--out", out})).out,
+                HasSubstr("by turns 2 % are: gfxrepro compare --binaries OLD NEW CONFIG\n"));
     EXPECT_THAT(readFile(out + "/comparison.md"), HasSubstr("1 and 1 processes cannot decide"));
 }
 
