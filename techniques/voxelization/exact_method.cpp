@@ -67,6 +67,7 @@ class CrossingFill {
                     .with({{"sheetX", x_}, {"sheetY", y_}}));
         }
     }
+    std::uint32_t openScanLines() const { return statistics_.read<std::uint32_t>(1).front(); }
     void record(technique::Recorder& recorder) const {
         const auto found = statistics_.read<std::uint32_t>(2);
         recorder.metric("ambiguous_scan_lines", found[0]);
@@ -209,6 +210,7 @@ class ExactMethod : public MeshMethod {
     void record(technique::Recorder& recorder) override {
         if (fill_) fill_->record(recorder);
     }
+    std::uint32_t openScanLines() const override { return fill_ ? fill_->openScanLines() : 0; }
     std::size_t sizeBytes() const override {
         return grid_.sheets.sizeBytes() + walk_->sizeBytes() + (fill_ ? fill_->sizeBytes() : 0) +
                (normals_ ? normals_->sizeBytes() : 0);

@@ -1,6 +1,7 @@
 // Voxelizes a mesh: the worksheet method of the thesis and the methods it is measured against.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -15,6 +16,7 @@ class MeshMethod {
     virtual void run(const DeviceMesh& mesh, gl::Profiler& profiler) = 0;
     virtual const VoxelGrid* grid() const { return nullptr; }
     virtual void record(technique::Recorder& /*recorder*/) {}
+    virtual std::uint32_t openScanLines() const { return 0; }
     virtual std::size_t sizeBytes() const = 0;
 };
 
@@ -31,6 +33,7 @@ class MeshVoxelizer : public GridSource {
     /// memory_bytes; of worksheets fragments; solid: ambiguous_scan_lines, by crossings
     /// disagreeing_voxels.
     void record(technique::Recorder& recorder) override;
+    std::uint32_t openScanLines() const override { return method_->openScanLines(); }
 
   private:
     MeshRequest request_;

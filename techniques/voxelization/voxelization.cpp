@@ -395,9 +395,15 @@ class Voxelization final : public technique::Technique {
 
     std::vector<std::string> writeFile(const std::filesystem::path& path) override {
         const VoxelModel model = voxelModelOf(grid()->read(), box_, *scene_);
-        std::vector<std::string> lines{fmt::format("voxels     {} of {}, {:g} wide",
-                                                   model.voxels.size(), model.shape.text(),
-                                                   model.voxelSize)};
+        std::vector<std::string> lines;
+        if (const std::uint32_t open = source_->openScanLines(); open > 0) {
+            lines.push_back(
+                fmt::format("warning    {} scan lines end inside the model, as its mesh is not "
+                            "closed: solid is what two axes of three call so",
+                            open));
+        }
+        lines.push_back(fmt::format("voxels     {} of {}, {:g} wide", model.voxels.size(),
+                                    model.shape.text(), model.voxelSize));
         for (const std::filesystem::path& written : writeVoxels(path, model)) {
             lines.push_back("written    " + written.string());
         }

@@ -182,6 +182,8 @@ class GridSource {
     /// Metrics of the source's own (the grid's are the technique's). Throws Error when the last
     /// render failed.
     virtual void record(technique::Recorder& /*recorder*/) {}
+    /// Of a solid by crossings: the scan lines that end inside, as its mesh is not closed.
+    virtual std::uint32_t openScanLines() const { return 0; }
 };
 
 }  // namespace gfxrepro::voxelization

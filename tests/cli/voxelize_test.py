@@ -39,9 +39,9 @@ class Voxelize(unittest.TestCase):
     def tearDownClass(cls):
         cls.kept.cleanup()
 
-    def voxelize(self, name, *arguments):
+    def voxelize(self, name, *arguments, model="box.obj"):
         """Standard output; the files are in the folder."""
-        command = [PROGRAM, "voxelize", self.folder / "box.obj", "--out", self.folder / name, "--device", "software", *arguments]
+        command = [PROGRAM, "voxelize", self.folder / model, "--out", self.folder / name, "--device", "software", *arguments]
         done = subprocess.run(command, capture_output=True, text=True, timeout=120)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return done.stdout
@@ -99,6 +99,16 @@ class Voxelize(unittest.TestCase):
         distances = np.minimum(centres - LOW, HIGH - centres).min(axis=1)
         self.assertTrue((distances[inner] > size).all() and (distances[~inner] < 1.1 * size).all())
         self.assertAlmostEqual(m.sum() * self.facts()["voxel_size"] ** 3, 24, delta=1)
+
+    def test_a_mesh_with_a_hole_is_said(self):
+        closed = self.mask("--fill", "solid")
+        (self.folder / "open.obj").write_text(box().rsplit("f ", 1)[0])  # without the side towards +x
+        said = {fill: self.voxelize("m.npy", "--resolution", "64", "--fill", fill, model="open.obj") for fill in ("surface", "solid")}
+        open_lines = closed.any(axis=0).sum()
+        self.assertIn(f"\nwarning    {open_lines} scan lines end inside the model, as its mesh is not closed", said["solid"])
+        self.assertTrue((np.load(self.folder / "m.npy") == closed).all())  # the other two axes know
+        for text in (said["surface"], self.voxelize("m.npy", "--fill", "solid")):
+            self.assertNotIn("scan lines", text)
 
     def test_viewers_get_the_same_voxels(self):
         m = self.mask()
