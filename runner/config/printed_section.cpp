@@ -205,7 +205,6 @@ std::vector<NoEffect> printedInVain(const Experiment& experiment) {
             {printed->keyLocation(key.name()), fmt::format("'{}': {}", key.name(), why)});
     };
     const std::string with = "; allowed: with '" + given.values.name() + "'";
-    require(given.sources, !experiment.printed.rows.empty(), "nothing is printed" + with);
     require(given.at, experiment.isPublished(),
             "nothing is printed that could have been measured there" + with);
     require(given.compared, !experiment.printed.rows.empty(),
@@ -230,6 +229,7 @@ Printed readPrinted(const Node& node, const Layout* layout, const TableNames* na
         if (key && !names) refuse(key, layout ? "layout" : "technique");
     }
     if (given.at && !layout) refuse(given.at, "technique");
+    if (given.sources && !given.values) refuse(given.sources, "values");
     Printed printed;
     printed.location = node.location();
     if (given.hardware) printed.hardware = given.hardware->text();

@@ -225,14 +225,16 @@ TEST_F(ExperimentTest, SourcesOfPrintedCellsStandBehindTheRemark) {
                   .printed.remark,
               "as printed; at scene s, t and column bb: read off; at scene s: a copy");
     EXPECT_EQ(load(with("{a copy: {scene: s}}" + values)).printed.remark, "at scene s: a copy");
+    EXPECT_EQ(loadError(with("{a copy: {scene: s}}")),
+              "DIR/zju/a.yaml:7:3: printed: 'sources' without 'values'");
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(loadError(with("{a copy: {scene: u}}")),
+    EXPECT_EQ(loadError(with("{a copy: {scene: u}}" + values)),
               head + "29: printed.sources.scene is u; allowed: s | t");
-    EXPECT_EQ(loadError(with("{a copy: {}}")),
+    EXPECT_EQ(loadError(with("{a copy: {}}" + values)),
               head +
                   "21: printed.sources is {}; allowed: {row axis: value}; of the whole table "
                   "'remark' says it");
-    EXPECT_EQ(loadError(with("a copy")),
+    EXPECT_EQ(loadError(with("a copy" + values)),
               head + "12: printed.sources is a copy; allowed: {TEXT: {row axis: value}}");
     EXPECT_EQ(
         loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\", sources: {b: {a: 1}}}\n"),
