@@ -53,6 +53,7 @@ struct Measured {
     std::string madeFrom;                              // its line of made-from.txt
     std::map<std::string, std::string> programs = {};  // hash and version by file
     std::string started = {};
+    bool isImported = false;
 };
 
 Measured readMeasured(const fs::path& runDir) {
@@ -97,6 +98,7 @@ Measured readMeasured(const fs::path& runDir) {
                       regression::picturesOf(runDir, run.records, params, unseededCases),
                       run.plan.buildId,
                       outcome::madeFromLine(runDir, run.manifest)};
+    measured.isImported = run.manifest.contains("imported");
     for (const run::ProgramUse& use : run::programsOf(run.manifest)) {
         measured.programs[use.file] =
             use.sha256.substr(0, 12) + (use.version.empty() ? "" : " (" + use.version + ")");
@@ -300,18 +302,19 @@ std::vector<regression::SeriesStep> keepHistory(const std::string& path, const M
 }
 
 /// What times of two runs cannot say, where they leave one undecided, and what would say it.
-void noteApart(const std::vector<Difference>& differences, bool isOfProgram,
+void noteApart(const std::vector<Difference>& differences, const Measured& measured,
                std::vector<std::string>& notes) {
     const bool isUndecided = std::ranges::any_of(differences, [](const Difference& one) {
         return one.key.isTime() && one.verdict == regression::SeriesVerdict::CannotTell;
     });
-    if (!isUndecided) return;
+    if (!isUndecided || measured.isImported) return;
     const regression::Rules rules;
     notes.push_back(fmt::format(
         "of two runs only times that differ by more than × {:.1f} are told, as a machine drifts "
         "between them; by turns {:.0f} % are: gfxrepro compare {}",
         1.0 + rules.driftApart, 100.0 * rules.effectFloor,
-        isOfProgram ? "--programs OLD_DIR NEW_DIR CONFIG" : "--binaries OLD NEW CONFIG"));
+        measured.programs.empty() ? "--binaries OLD NEW CONFIG"
+                                  : "--programs OLD_DIR NEW_DIR CONFIG"));
 }
 
 /// What two runs say that were measured for themselves. Where the older has no pictures (kept
@@ -325,7 +328,7 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     regression::noteFailures(differences, older.failures, newer.failures);
     regression::noteVoidTimes(differences, older.voidTimes, newer.voidTimes);
     regression::noteOnce(differences, older.once, newer.once);
-    noteApart(differences, !newer.programs.empty(), notes);
+    noteApart(differences, newer, notes);
     for (const auto& [file, now] : newer.programs) {
         const auto then = older.programs.find(file);
         if (then == older.programs.end() || then->second == now) continue;

@@ -155,6 +155,12 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     EXPECT_THAT(
         mockGfxrepro({"compare", dir("theirs"), dir("theirs"), "--out", dir("compared")}).out,
         HasSubstr(dir("theirs") + ": " + mark));
+    // Nor can anyone here measure it by turns.
+    const std::string times = folder_.write("times.csv", "samples,render_ms\n4,10\n16,20\n");
+    endedWith(0,
+              mockGfxrepro({"import", times, "--metric", "render_ms=ms", "--out", dir("times")}));
+    EXPECT_THAT(mockGfxrepro({"compare", dir("times"), dir("times"), "--out", dir("times-2")}).out,
+                AllOf(HasSubstr("\n2 cannot tell; "), Not(HasSubstr("by turns"))));
 }
 
 TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
