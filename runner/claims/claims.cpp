@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -150,6 +149,7 @@ struct ByScene {
 Outcome judgePart(const ClaimPart& part, const ClaimReader& reader,
                   const std::vector<GroupRead>& groups, ByScene& scenes) {
     std::optional<Outcome> worst;
+    Judgement aside;  // what was measured of those that are not judged
     for (const GroupRead& group : groups) {
         if (group.reading.rows.empty() && group.reading.problem.empty()) continue;
         const std::string name = reader.groupName(group.rows);
@@ -159,15 +159,18 @@ Outcome judgePart(const ClaimPart& part, const ClaimReader& reader,
             const std::string scene = reader.sceneOf(group.unfit);
             addToScene(scenes.unfit, scene.empty() ? "its scenes" : scene,
                        group.counts() ? Verdict::NotApplicable : outcome.judgement.verdict);
-            if (!group.counts()) continue;
+            if (!group.counts()) {
+                aside.measured = outcome.judgement.measured;
+                continue;
+            }
         }
         addToScene(scenes.judged, reader.sceneOf(group.rows), outcome.judgement.verdict);
         if (!worst || isWorse(outcome, *worst)) worst = std::move(outcome);
     }
     if (worst) return *worst;
-    return {{},
-            part.needsExpected && !groups.empty() ? "no printed number to compare with"
-                                                  : "this run has no row that the claim reads"};
+    return {aside, part.needsExpected && !groups.empty()
+                       ? "no printed number to compare with"
+                       : "this run has no row that the claim reads"};
 }
 
 /// Where the claim is not to be judged here, says so; true then.
@@ -346,27 +349,9 @@ std::vector<std::vector<GroupRead>> readParts(const std::vector<ClaimPart>& part
 }
 
 /// `given` is the table of which `table` may be the turned one (tableFor).
-ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
-                          const tables::Table& table, const std::string& rows,
-                          const ReportContext& context) {
-    ClaimResult result = unjudged(claim, table, context);
-    result.rows = rows;
-    if (result.verdict == Verdict::NotApplicable) return result;
-    ClaimReader reader(claim, table);
-    result.timeKind = reader.timeKind();
-    if (isNotApplicable(claim, table, context, result)) return result;
-    const std::string_view metric = claim.kind->metric;
-    if (!metric.empty() && !reader.readsOnly(metric)) {
-        result.reason = fmt::format("reads another metric than {}", metric);
-        return result;
-    }
-    const bool isAbsolute = result.timeKind == ClaimSpec::TimeKind::Absolute;
-    if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
-        result.verdict = Verdict::NotApplicable;
-        result.reason = "a time as such is judged at the printed parameters only";
-        return result;
-    }
-    const std::string clock = chooseClock(table, context, reader, result);
+void judgeClaim(const ClaimSpec& claim, const tables::Table& given, const ReportContext& context,
+                ClaimReader& reader, ClaimResult& result) {
+    const std::string clock = chooseClock(given, context, reader, result);
     const std::vector<ClaimPart> parts = partsOf(claim);
     const auto read =
         readParts(parts, reader, tables::columnNoise(given, reader.timeColumns(), reader.clock()));
@@ -391,13 +376,52 @@ ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
     if (!unfit.empty() && scenes.judged.empty()) {
         result.verdict = Verdict::NotApplicable;
         result.reason = unfit;
-        return result;
+        return;
     }
     const std::string part = result.rows.empty() ? "" : fmt::format("on {}", result.rows);
     for (const std::string& note :
          {unfit, clock, calibratedNote(claim, reader), ownTruthNote(reader), part}) {
         if (!note.empty()) result.reason += (result.reason.empty() ? "" : "; ") + note;
     }
+}
+
+/// What was measured stands also beside a claim that is not judged here, where it can be read.
+void measureAlone(const ClaimSpec& claim, const tables::Table& given, const ReportContext& context,
+                  ClaimReader& reader, ClaimResult& result) {
+    ClaimResult judged = result;
+    try {
+        judgeClaim(claim, given, context, reader, judged);
+    } catch (const Error&) {
+        return;
+    }
+    result.measured = judged.measured;
+}
+
+ClaimResult evaluateClaim(const ClaimSpec& claim, const tables::Table& given,
+                          const tables::Table& table, const std::string& rows,
+                          const ReportContext& context) {
+    ClaimResult result = unjudged(claim, table, context);
+    result.rows = rows;
+    ClaimReader reader(claim, table);
+    const bool isElsewhere = result.verdict == Verdict::NotApplicable;
+    if (!isElsewhere) result.timeKind = reader.timeKind();
+    if (isElsewhere || isNotApplicable(claim, table, context, result)) {
+        measureAlone(claim, given, context, reader, result);
+        return result;
+    }
+    const std::string_view metric = claim.kind->metric;
+    if (!metric.empty() && !reader.readsOnly(metric)) {
+        result.reason = fmt::format("reads another metric than {}", metric);
+        return result;
+    }
+    const bool isAbsolute = result.timeKind == ClaimSpec::TimeKind::Absolute;
+    if (isAbsolute && table.isPublished && !reader.isAtPrintedParameters()) {
+        measureAlone(claim, given, context, reader, result);
+        result.verdict = Verdict::NotApplicable;
+        result.reason = "a time as such is judged at the printed parameters only";
+        return result;
+    }
+    judgeClaim(claim, given, context, reader, result);
     return result;
 }
 
@@ -532,53 +556,6 @@ void markRepeats(std::vector<ClaimResult>& results) {
         result.isRepeat = found != verdicts.end() &&
                           (result.verdict == Verdict::Holds || result.verdict == found->second);
     }
-}
-
-std::string claimSummaryLine(const std::vector<ClaimResult>& results) {
-    if (results.empty()) return "no claims";
-    std::map<Verdict, int> counts, inPart;
-    for (const ClaimResult& result : results) {
-        ++counts[result.verdict];
-        inPart[result.verdict] += result.holdsOn.empty() ? 0 : 1;
-    }
-    std::vector<std::string> parts;
-    for (const auto& [verdict, count] : counts) {
-        std::string word(verdictName(verdict));
-        if (verdict == Verdict::Holds && count != 1) word = "hold";
-        if (verdict == Verdict::Fails && count != 1) word = "fail";
-        if (inPart[verdict] > 0)
-            word += fmt::format(" ({} hold{} on some scenes)", inPart[verdict],
-                                inPart[verdict] == 1 ? "s" : "");
-        parts.push_back(std::to_string(count) + " " + word);
-    }
-    return joined(parts);
-}
-
-std::string originSummaryLine(const std::vector<ClaimResult>& results) {
-    using Origin = ClaimSpec::Origin;
-    struct CountedGroup {
-        Origin origin;
-        bool isCounted;
-        const char* name;
-    };
-    static constexpr CountedGroup kGroups[] = {
-        {Origin::Document, true, "of the documents' own claims"},
-        {Origin::Document, false, "of these on part of their rows, or said twice"},
-        {Origin::Existence, false, "that can hardly fail"},
-        {Origin::Derived, false, "read off their numbers"},
-        {Origin::Ours, false, "our aims"},
-        {Origin::Definition, false, "definitions"},
-        {Origin::Calibrated, false, "calibrated inputs"}};
-    std::vector<std::string> parts;
-    for (const CountedGroup& group : kGroups) {
-        std::vector<ClaimResult> alike;
-        std::ranges::copy_if(results, std::back_inserter(alike), [&](const ClaimResult& result) {
-            return result.origin == group.origin && result.isCounted() == group.isCounted;
-        });
-        if (alike.empty()) continue;
-        parts.push_back(fmt::format("{} {}", group.name, claimSummaryLine(alike)));
-    }
-    return parts.empty() ? claimSummaryLine(results) : joined(parts, "; ");
 }
 
 std::vector<ClaimResult> evaluateClaims(const std::vector<config::Experiment>& experiments,

@@ -553,6 +553,9 @@ TEST(Claims, NotApplicable) {
     ClaimResult result = judgePowers("bound: a, at_most: 1, kind: architectural", records);
     EXPECT_EQ(result.verdict, Verdict::NotApplicable);
     EXPECT_EQ(result.reason, "claims about a GPU are not judged on a software device");
+    EXPECT_EQ(result.measured, judgePowers("bound: a, at_most: 1", records).measured);
+    EXPECT_NE(result.measured, "") << "beside what was asked for";
+    EXPECT_EQ(result.margin, "");
     result = judgePowers("bound: a, at_most: 1, profile: paper", records);
     EXPECT_EQ(result.verdict, Verdict::NotApplicable);
     EXPECT_EQ(result.reason, "judged in the profile 'paper' only");
@@ -1699,6 +1702,7 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
     EXPECT_EQ(judged(ofText, 3, 1, 1, "[tree]").holdsOn, "1 of 2 scenes, not on nest");
     const ClaimResult none = judged(ofText + ", at: {scene: tree}", 1, 1, 3, "[tree]");
     EXPECT_EQ(none.verdict, Verdict::NotApplicable);
+    EXPECT_NE(none.measured, "");
     EXPECT_EQ(none.reason,
               "not judged on tree (fails there), which could not be fitted to what is printed");
     EXPECT_EQ(judged(bound + ", origin: ours", 1, 1, 3, "[tree]").verdict, Verdict::Fails);
