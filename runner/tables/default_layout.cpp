@@ -279,6 +279,11 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
+/// A step of a frame on either clock.
+bool isPassTime(const std::string& metric) {
+    return metric == "gpu_time_ms" || metric == "cpu_time_ms";
+}
+
 /// What was recorded of a metric and pass.
 struct Series {
     std::string metric, pass, unit;
@@ -292,7 +297,7 @@ struct Series {
     bool isOfMebibytes() const { return unit == "byte" && most >= kMebibyte; }
     std::string label() const {
         if (metric == "wall_time_ms") return "frame_ms";
-        if (metric == "gpu_time_ms" || metric == "cpu_time_ms") return pass + "_ms";
+        if (isPassTime(metric)) return pass + "_ms";
         std::string name = metric;
         if (isOfMebibytes() && name.ends_with("_bytes")) name.replace(name.size() - 5, 5, "mib");
         return pass.empty() || isOfOnlyPicture ? name : name + '_' + pass;
@@ -335,7 +340,8 @@ bool isByTheWay(const std::string& metric) {
     return metric == "process_time_ms" || metric == "setup_time_ms" || metric == "load_time_ms";
 }
 
-/// In the order of declaration, without details; the times that a program says of itself first.
+/// Without details: the times that a program says of itself, that of a frame, memory, errors of
+/// pictures, what else is declared in its order, then the passes.
 std::vector<Series> declared(std::vector<Series> all, const config::Experiment& experiment) {
     const config::Outputs& outputs = experiment.outputs;
     std::erase_if(all, [&](const Series& series) {
@@ -344,14 +350,21 @@ std::vector<Series> declared(std::vector<Series> all, const config::Experiment& 
         const config::MetricInfo* info = outputs.find(series.metric);
         return !info || info->isDetail || info->name != series.metric;
     });
+    enum Group { ItsOwnTime, FrameTime, Memory, PictureError, Other, Pass };
+    const auto groupOf = [&](const Series& series) {
+        if (series.metric == "wall_time_ms") return FrameTime;
+        if (isPassTime(series.metric)) return Pass;
+        const bool isItsOwn = config::goesByClock(experiment) && series.metric.ends_with("_ms") &&
+                              !isByTheWay(series.metric);
+        if (isItsOwn) return ItsOwnTime;
+        if (series.unit == "byte") return Memory;
+        return config::isPictureError(series.metric) ? PictureError : Other;
+    };
     const auto rank = [&](const Series& series) {
         const auto at =
             std::ranges::find(outputs.metrics, series.metric, &config::MetricInfo::name);
-        const bool isPass = series.metric == "gpu_time_ms" || series.metric == "cpu_time_ms";
-        const bool isItsOwn = config::goesByClock(experiment) && series.metric.ends_with("_ms") &&
-                              !isByTheWay(series.metric);
-        const int group = series.metric == "wall_time_ms" ? 1 : isPass ? 2 : isItsOwn ? 0 : 3;
-        const bool isByTheRunner = group == 1 || group == 2;
+        const Group group = groupOf(series);
+        const bool isByTheRunner = group == FrameTime || group == Pass;
         return std::tuple(group, isByTheRunner ? outputs.metrics.begin() : at, series.order);
     };
     std::ranges::stable_sort(all, {}, rank);
@@ -363,49 +376,6 @@ std::string formatOf(const Series& series) {
     constexpr double kManyDigits = 1e4;
     if (series.isOfMebibytes()) return "{median:.4g}";
     return series.isWhole || series.most >= kManyDigits ? "{median:.0f}" : "{median:.4g}";
-}
-
-struct Axis {
-    std::size_t index;
-    std::vector<double> numbers;  // those of its labels; empty where one is none
-    std::size_t count = 0;        // of its labels
-};
-
-Axis axisOf(const Table& table, std::size_t index) {
-    std::set<std::string> labels;
-    std::set<double> numbers;
-    for (const TableRow& row : table.rows) {
-        labels.insert(row.labels[index]);
-        if (const auto number = parseDouble(row.labels[index])) numbers.insert(*number);
-    }
-    const bool isOfNumbers = numbers.size() == labels.size();
-    return {
-        index,
-        isOfNumbers ? std::vector<double>(numbers.begin(), numbers.end()) : std::vector<double>(),
-        labels.size()};
-}
-
-/// Values over several powers of two are told apart on a logarithmic axis alone.
-bool isWide(double least, double most, double factor) {
-    return least > 0.0 && most / least >= factor;
-}
-
-bool isWide(const Table& table, const std::vector<std::string>& columns) {
-    double least = std::numeric_limits<double>::infinity(), most = 0.0;
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        if (std::ranges::find(columns, table.columns[i].label) == columns.end()) continue;
-        for (const TableRow& row : table.rows) {
-            if (row.cells[i].values.empty()) continue;
-            least = std::min(least, row.cells[i].values[0].value);
-            most = std::max(most, row.cells[i].values[0].value);
-        }
-    }
-    return isWide(least, most, 20.0);
-}
-
-std::size_t measuredCount(const Table& table, std::size_t column) {
-    return static_cast<std::size_t>(std::ranges::count_if(
-        table.rows, [&](const TableRow& row) { return row.cells[column].isOk(); }));
 }
 
 /// What is counted in frames, and one frame does not have.
@@ -525,63 +495,6 @@ void describeColumns(const config::Experiment& experiment, const config::Layout&
             column.better = info->better;
         }
     }
-}
-
-std::vector<config::PlotSpec> defaultPlots(const Table& table) {
-    std::vector<Axis> axes;
-    for (std::size_t i = 0; i < table.rowAxes.size(); ++i) axes.push_back(axisOf(table, i));
-    const auto x =
-        std::ranges::max_element(axes, {}, [](const Axis& axis) { return axis.numbers.size(); });
-    if (x == axes.end() || x->numbers.size() < 2) return {};
-    config::PlotSpec plot;
-    plot.x = table.rowAxes[x->index];
-    plot.isLogX = isWide(x->numbers.front(), x->numbers.back(), 4.0);
-    for (const Axis& axis : axes) {
-        if (axis.index == x->index) continue;
-        if (!plot.by && axis.count > 1) {
-            plot.by = table.rowAxes[axis.index];
-        } else {
-            plot.panels.push_back(table.rowAxes[axis.index]);
-        }
-    }
-    constexpr std::size_t kMostCurves = 6;
-    std::vector<std::string> times, others, errors;  // the last of a picture
-    for (std::size_t i = 0; i < table.columns.size(); ++i) {
-        const TableColumn& column = table.columns[i];
-        if (measuredCount(table, i) < 2) continue;
-        const Cell& cell = table.rows.front().cells[i];
-        if (config::isPictureError(cell.metric)) errors.push_back(column.label);
-        const bool isTime = cell.isTime && column.label.ends_with("_ms");
-        const std::size_t most = plot.by ? 1 : kMostCurves;
-        if (isTime && times.size() < most) times.push_back(column.label);
-        if (!cell.isTime && column.better != config::Better::Neither && others.empty()) {
-            others.push_back(column.label);
-        }
-    }
-    std::vector<config::PlotSpec> plots;
-    for (const std::vector<std::string>& columns : {times, others}) {
-        if (columns.empty()) continue;
-        const auto first = std::ranges::find(table.columns, columns[0], &TableColumn::label);
-        plot.y = columns;
-        plot.isLogY = isWide(table, columns);
-        plot.title = fmt::format(
-            "{} over {}",
-            columns.size() > 1 ? "Times" : quantityOf(columns[0], table.words, first->unit).text(),
-            quantityOf(plot.x, table.words).words);
-        if (const auto better = config::betterText(first->better); !better.empty()) {
-            plot.title += fmt::format(" ({})", better);
-        }
-        plots.push_back(plot);
-    }
-    if (errors.empty() || times.empty()) return plots;
-    plot.x = times[0];
-    plot.y = {errors[0]};
-    plot.isLogX = isWide(table, {plot.x});
-    plot.isLogY = isWide(table, plot.y);
-    plot.title = fmt::format("{} over {}", quantityOf(errors[0], table.words).text(),
-                             quantityOf(plot.x, table.words).words);
-    plots.push_back(plot);
-    return plots;
 }
 
 }  // namespace gfxrepro::tables

@@ -29,8 +29,9 @@ struct DefaultLayout {
 };
 
 /// For an experiment of one's own without a `layout`: a row a point of its sweep; columns are the
-/// times that a program says of itself, those of a frame and its passes, then the metrics in the
-/// order in which the technique declares them (Experiment::outputs), without details. Of plans that
+/// times that a program says of itself, that of a frame, memory, errors of pictures, then the
+/// metrics in the order in which the technique declares them (Experiment::outputs), without
+/// details, and last the passes of a frame. Of plans that
 /// do not know what was declared: all, as recorded. A MiB and more is shown in MiB. A metric is
 /// called METRIC_PASS; where one picture alone has errors, they are called by the metric.
 DefaultLayout defaultLayout(const config::Experiment& experiment,

@@ -59,15 +59,15 @@ std::vector<std::string> labelsOf(const Table& table) {
     return labels;
 }
 
-TEST(DefaultLayout, ShowsTimesThenMetricsAndTellsWhatIsAlikeOnce) {
+TEST(DefaultLayout, ShowsAFrameMetricsThenStepsAndTellsWhatIsAlikeOnce) {
     const Table table = buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}));
     EXPECT_THAT(table.rowAxes, ElementsAre("resolution"));
     EXPECT_THAT(labelsOf(table),
-                ElementsAre("frame_ms", "draw_ms", "error_pct", "voxels", "memory_mib"));
+                ElementsAre("frame_ms", "memory_mib", "error_pct", "voxels", "draw_ms"));
     EXPECT_THAT(table.constants, ElementsAre("triangles 69451"));
     EXPECT_EQ(table.rows[1].cells[0].measured, "32");
     EXPECT_EQ(table.rows[1].cells[3].measured, "640");
-    EXPECT_EQ(table.rows[1].cells[4].measured, "64");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "64");
     EXPECT_EQ(table.columns[2].better, Better::Lower);
     EXPECT_EQ(table.columns[2].doc, "wrong");
 }
@@ -383,21 +383,21 @@ Recorded recordedOfPictures(std::initializer_list<const char*> pictures) {
 
 TEST(DefaultLayout, ErrorsOfTheOnlyPictureNeedNotSayOfWhich) {
     EXPECT_THAT(labelsOf(buildTable(programWith("a: a.png"), recordedOfPictures({"a"}))),
-                ElementsAre("render_ms", "frame_ms", "rays", "mse", "rmse"));
+                ElementsAre("render_ms", "frame_ms", "mse", "rmse", "rays"));
     EXPECT_THAT(
         labelsOf(buildTable(programWith("a: a.png, b: b.png"), recordedOfPictures({"a", "b"}))),
-        ElementsAre("render_ms", "frame_ms", "rays", "mse_a", "mse_b", "rmse_a", "rmse_b"));
+        ElementsAre("render_ms", "frame_ms", "mse_a", "mse_b", "rmse_a", "rmse_b", "rays"));
 }
 
 TEST(DefaultPlots, OfAPicturesErrorAreAlsoOverTheTimeThatLeads) {
     const auto plots = defaultPlots(buildTable(programWith("a: a.png"), recordedOfPictures({"a"})));
     ASSERT_EQ(plots.size(), 3U);
-    EXPECT_THAT(plots[0].y, ElementsAre("render_ms", "frame_ms"));
+    EXPECT_THAT(plots[0].y, ElementsAre("mse"));
+    EXPECT_EQ(plots[0].x, "samples");
+    EXPECT_EQ(plots[1].x, "render_ms");
     EXPECT_THAT(plots[1].y, ElementsAre("mse"));
-    EXPECT_EQ(plots[1].x, "samples");
-    EXPECT_EQ(plots[2].x, "render_ms");
-    EXPECT_THAT(plots[2].y, ElementsAre("mse"));
-    EXPECT_EQ(plots[2].title, "mse over render");
+    EXPECT_EQ(plots[1].title, "mse over render (lower is better)");
+    EXPECT_THAT(plots[2].y, ElementsAre("render_ms", "frame_ms"));
 }
 
 TEST(DefaultLayout, OfOneCaseNothingIsFolded) {
@@ -422,6 +422,14 @@ TEST(DefaultPlots, AreOverTheSweptNumber) {
     EXPECT_TRUE(plots[0].isLogX);
     EXPECT_FALSE(plots[0].isLogY);
     EXPECT_THAT(plots[1].y, ElementsAre("error_pct"));
+}
+
+/// Four decades for a step that takes no time would leave no room for the others.
+TEST(DefaultPlots, StepsThatOneCannotSeeAreLeftOut) {
+    Table table = buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}));
+    const std::size_t draw = *table.findColumn("draw_ms");
+    for (TableRow& row : table.rows) row.cells[draw].values[0].value = 1e-4;
+    EXPECT_THAT(defaultPlots(table)[0].y, ElementsAre("frame_ms"));
 }
 
 TEST(DefaultPlots, NeedAnAxisOfNumbers) {

@@ -16,7 +16,10 @@ namespace gfxrepro::tables {
 namespace {
 
 using test::errorText;
+using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
 
 std::vector<std::string> columnLabels(const Table& table) {
     std::vector<std::string> labels;
