@@ -24,7 +24,9 @@ namespace gfxrepro::image {
 namespace {
 
 constexpr bool kSwapBytes = std::endian::native == std::endian::little;  // PNG is big-endian
-constexpr int kZlibLevel = 2;  // of 1 … 9: a run writes hundreds of images, and waits for each
+// Of 1 … 9: a run writes hundreds of images, and waits for each; a file that carries images is
+// sent.
+constexpr int kZlibLevel = 2, kSentZlibLevel = 9;
 
 /// libpng reports an error by this callback, which must not return.
 [[noreturn]] void keepMessageAndJump(png_structp png, png_const_charp message) {
@@ -220,7 +222,7 @@ class Reader {
 
 class Writer {
   public:
-    Writer() {
+    explicit Writer(int zlibLevel = kZlibLevel) {
         png_ = png_create_write_struct(PNG_LIBPNG_VER_STRING, &message_, keepMessageAndJump,
                                        ignoreWarning);
         if (png_ != nullptr) info_ = png_create_info_struct(png_);
@@ -229,7 +231,7 @@ class Writer {
             throw Error("libpng cannot be started");
         }
         png_set_write_fn(png_, &encoded_, append, nullptr);
-        png_set_compression_level(png_, kZlibLevel);
+        png_set_compression_level(png_, zlibLevel);
     }
     ~Writer() { png_destroy_write_struct(&png_, &info_); }
     Writer(const Writer&) = delete;
@@ -466,7 +468,7 @@ void writePng(const std::filesystem::path& path, const Image16& image) {
 }
 
 std::string encodePng(const Image8& image) {
-    return Writer().encoded(image, "cannot encode a PNG");
+    return Writer(kSentZlibLevel).encoded(image, "cannot encode a PNG");
 }
 
 }  // namespace gfxrepro::image

@@ -80,7 +80,12 @@ using ImageKey = std::tuple<std::string, int, std::string>;  // case, frame, nam
 /// What an <img> of the page takes for a file.
 std::string addressOf(const fs::path& file, const GalleryPlace& place) {
     if (place.embedding != GalleryPlace::Embedding::None) {
-        return "data:image/png;base64," + base64(readFile(file));
+        std::string png = readFile(file);
+        if (place.embedding == GalleryPlace::Embedding::Reduced) {
+            std::string smaller = image::encodePng(image::readPng8(file));
+            if (smaller.size() < png.size()) png = std::move(smaller);
+        }
+        return "data:image/png;base64," + base64(png);
     }
     const fs::path folder = fs::absolute(place.page).parent_path();
     return encodedAddress(fs::relative(fs::absolute(file), folder));
