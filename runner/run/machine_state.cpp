@@ -307,7 +307,7 @@ std::string MachineState::sentence() const {
     if (!isKnown()) return "";
     const std::vector<std::string> wrong = problems();
     if (!wrong.empty()) {
-        return fmt::format("The machine was not quiet while this was timed: {}.",
+        return fmt::format("The machine was disturbed while this was timed: {}.",
                            joined(wrong, "; "));
     }
     // Too short to tell: less than the kernel's ticks, and yet a large share.
@@ -320,8 +320,8 @@ std::string MachineState::sentence() const {
                                     percentText(stolenS_ / processorS_)));
     }
     if (const std::string gpu = gpu_.text(); !gpu.empty()) parts.push_back(gpu);
-    return fmt::format("The machine was quiet while this was timed{}{}.", parts.empty() ? "" : ": ",
-                       joined(parts, "; "));
+    return fmt::format("Nothing disturbed the machine while this was timed{}{}.",
+                       parts.empty() ? "" : ": ", joined(parts, "; "));
 }
 
 void MachineWatch::unitBegan(const Unit& unit) {

@@ -235,7 +235,7 @@ TEST_F(Faults, AMachineThatIsNotQuietIsWarnedOfAndRecorded) {
     EXPECT_EQ(hot.err.find(warning), hot.err.rfind(warning)) << "once";
     const auto manifest = nlohmann::json::parse(readFile(dir + "/manifest.json"));
     EXPECT_EQ(manifest["machine_states"]["sweep/mock"]["hottest_c"], 97.0);
-    const std::string note = "The machine was not quiet while this was timed: it was hot, 97 °C";
+    const std::string note = "The machine was disturbed while this was timed: it was hot, 97 °C";
     EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"), HasSubstr(note));
     EXPECT_THAT(readFile(dir + "/report.html"), HasSubstr(note));
     // A run that goes on keeps what it saw.

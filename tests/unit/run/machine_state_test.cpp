@@ -77,7 +77,7 @@ TEST(MachineState, DoesNotCountOurOwnWorkAsThatOfOthers) {
     const MachineState state = stateOf(before, machine.read());
     EXPECT_THAT(state.problems(), IsEmpty());
     EXPECT_EQ(state.sentence(),
-              "The machine was quiet while this was timed: other processes took 0.5 % of 2 "
+              "Nothing disturbed the machine while this was timed: other processes took 0.5 % of 2 "
               "processors, the host 0 %.");
 }
 
@@ -88,7 +88,7 @@ TEST(MachineState, SaysNothingOfARemainder) {
     machine.workerS += 2.9999;  // of twenty seconds of two processors
     machine.idleS += 17.0;
     EXPECT_EQ(stateOf(before, machine.read()).sentence(),
-              "The machine was quiet while this was timed: other processes took 0 % of 2 "
+              "Nothing disturbed the machine while this was timed: other processes took 0 % of 2 "
               "processors, the host 0 %.");
 }
 
@@ -101,7 +101,7 @@ TEST(MachineState, IsLoadedByTheWorkOfOthers) {
     const MachineState state = stateOf(before, machine.read());
     EXPECT_THAT(state.problems(), ElementsAre("other processes took 38 % of 2 processors"));
     EXPECT_EQ(state.sentence(),
-              "The machine was not quiet while this was timed: other processes took 38 % of 2 "
+              "The machine was disturbed while this was timed: other processes took 38 % of 2 "
               "processors.");
 }
 
