@@ -319,6 +319,7 @@ Results writeResults(const fs::path& runDir, const run::StoredRun& run, const Re
         const std::vector<std::string> notes = run::notesOf(run.manifest);
         report::writeTables(out, withNotes(results.tables, notes), notes);
         tables::writeFits(out, experiments, results.tables);
+        report::writeNearness(out, experiments, results.tables);
     }
     if (which.claims) {
         report::writeClaims(out, run::caseResults(run, runDir), results.claims, results.context,

@@ -37,9 +37,9 @@ struct ResultFiles {
     report::PicturesDone progress = {};
     std::filesystem::path out = {};  // where they go; empty: the run's folder
 };
-/// Makes cases.csv (as in tidy.h), tables/ and plots/, claims.csv with junit.xml, report.html again
-/// from the records. With `out` nothing is written into the run's folder, and nothing over the
-/// results of another run.
+/// Makes cases.csv (as in tidy.h), tables/, nearness.csv and plots/, claims.csv with junit.xml,
+/// report.html again from the records. With `out` nothing is written into the run's folder, and
+/// nothing over the results of another run.
 Results writeResults(const std::filesystem::path& runDir, const run::StoredRun& run,
                      const ResultFiles& which);
 

@@ -81,11 +81,35 @@ std::string marker(const CurveStyle& style, double x, double y, double size,
     return fmt::format("<path d=\"{}Z\" {}>{}</path>\n", path, attributes, shownTitle);
 }
 
-std::string intervalBar(double x, double low, double high) {
+std::string intervalBar(double x, double low, double high, Along along = Along::Y) {
     constexpr double kHalf = 4.5;
     constexpr std::string_view kStyle = "stroke-width=\"1.2\"";
-    return svgLine(x, low, x, high, kStyle) + svgLine(x - kHalf, low, x + kHalf, low, kStyle) +
-           svgLine(x - kHalf, high, x + kHalf, high, kStyle);
+    const auto line = [&](double x1, double y1, double x2, double y2) {
+        return along == Along::Y ? svgLine(x1, y1, x2, y2, kStyle)
+                                 : svgLine(y1, x1, y2, x2, kStyle);
+    };
+    return line(x, low, x, high) + line(x - kHalf, low, x + kHalf, low) +
+           line(x - kHalf, high, x + kHalf, high);
+}
+
+/// Bounds that can be drawn.
+bool hasEnds(tables::Bounds bounds, const metrics::Interval& interval) {
+    return bounds != tables::Bounds::None && !std::isnan(interval.low) &&
+           !std::isnan(interval.high);
+}
+
+/// " (95 % interval 4 – 5)"; empty without any.
+std::string boundsText(tables::Bounds bounds, const metrics::Interval& interval) {
+    if (!hasEnds(bounds, interval)) return "";
+    return fmt::format(" ({} {:.6g} – {:.6g})", tables::boundsName(bounds), interval.low,
+                       interval.high);
+}
+
+/// "time [ms] 4.2 (95 % interval 4 – 5)".
+std::string valueText(const std::string& label, double value, tables::Bounds bounds,
+                      const metrics::Interval& interval) {
+    return fmt::format("{}{}{:.6g}{}", label, label.empty() ? "" : " ", value,
+                       boundsText(bounds, interval));
 }
 
 /// All values of a panel that its axes have to hold.
@@ -95,6 +119,10 @@ void gatherValues(const tables::FigurePanel& panel, std::vector<double>& x,
         for (const auto* points : {&curve.points, &curve.printed, &curve.reference}) {
             for (const tables::FigurePoint& point : *points) {
                 x.push_back(point.x);
+                if (point.xBounds != tables::Bounds::None) {
+                    x.push_back(point.xInterval.low);
+                    x.push_back(point.xInterval.high);
+                }
                 if (point.y) y.push_back(*point.y);
                 if (point.bounds == tables::Bounds::None) continue;
                 y.push_back(point.interval.low);
@@ -121,6 +149,7 @@ class FigureDrawing {
     struct Entry {
         std::string sample;  // around 0, 0
         std::string text;
+        std::optional<std::size_t> curve = {};  // whose name it is
     };
 
     void addLines(const Lines& lines, std::string_view style = "") {
@@ -137,14 +166,16 @@ class FigureDrawing {
             entries.push_back(
                 {group(style.colour, svgLine(-11.0, 0.0, 11.0, 0.0, "stroke-width=\"1.8\"") +
                                          marker(style, 0.0, 0.0, kMeasured)),
-                 figure_.curveNames[i]});
+                 figure_.curveNames[i], i});
         }
         bool hasPrinted = false;
         std::set<tables::Bounds> bounds;
         for (const tables::FigurePanel& panel : figure_.panels) {
             for (const tables::FigureCurve& curve : panel.curves) {
                 hasPrinted = hasPrinted || !curve.printed.empty();
-                for (const auto& point : curve.points) bounds.insert(point.bounds);
+                for (const auto& point : curve.points) {
+                    bounds.insert({point.bounds, point.xBounds});
+                }
             }
         }
         bounds.erase(tables::Bounds::None);
@@ -180,9 +211,12 @@ class FigureDrawing {
             double room = kSample;
             for (const auto& line : lines) room = std::max(room, kSample + textWidth(line));
             if (x + room > width_) endRow();
-            svg_ += fmt::format("<g transform=\"translate({:.5g} {:.5g})\">\n{}</g>\n",
-                                x + 0.5 * kSample - 3.0, end_ + kFontPx - 4.0, entry.sample);
-            svg_ += svgLines(x + kSample, end_ + kFontPx, "start", lines);
+            const std::string drawn =
+                fmt::format("<g transform=\"translate({:.5g} {:.5g})\">\n{}</g>\n",
+                            x + 0.5 * kSample - 3.0, end_ + kFontPx - 4.0, entry.sample) +
+                svgLines(x + kSample, end_ + kFontPx, "start", lines);
+            svg_ += entry.curve ? fmt::format("<g data-name=\"{}\">\n{}</g>\n", *entry.curve, drawn)
+                                : drawn;
             most = std::max(most, lines.size());
             x += room + kGap;
         }
@@ -244,7 +278,8 @@ class FigureDrawing {
                             panel.yTicks);
             drawMarks(figure_.panels[i].marks, plane);
             for (std::size_t n = 0; n < figure_.panels[i].curves.size(); ++n) {
-                drawCurve(figure_.panels[i].curves[n], styleOf(n), plane);
+                svg_ += fmt::format("<g data-curve=\"{}\">\n{}</g>\n", n,
+                                    curveSvg(figure_.panels[i], n, plane));
             }
             next = plane.top + plane.height + 30.0;
             if (i + columns < count) continue;
@@ -266,7 +301,25 @@ class FigureDrawing {
         }
     }
 
-    void drawCurve(const tables::FigureCurve& curve, const CurveStyle& style, const Plane& plane) {
+    /// What a point says of itself: "grass, peeling: size 4, time [ms] 4.2 (range 4 – 5)".
+    std::string pointText(const tables::FigurePanel& panel, const tables::FigureCurve& curve,
+                          const tables::FigurePoint& point, std::string_view what) const {
+        if (!point.remark.empty()) {
+            return point.remark + boundsText(point.bounds, point.interval);
+        }
+        Lines names;
+        if (!panel.title.empty()) names.push_back(panel.title);
+        if (figure_.curveNames.size() > 1) names.push_back(curve.name);
+        if (!what.empty()) names.emplace_back(what);
+        return fmt::format("{}{}{}, {}", joined(names), names.empty() ? "" : ": ",
+                           valueText(figure_.xLabel, point.x, point.xBounds, point.xInterval),
+                           valueText(panel.yLabel, *point.y, point.bounds, point.interval));
+    }
+
+    std::string curveSvg(const tables::FigurePanel& panel, std::size_t which,
+                         const Plane& plane) const {
+        const tables::FigureCurve& curve = panel.curves[which];
+        const CurveStyle& style = styleOf(which);
         const auto path = [&](const std::vector<tables::FigurePoint>& points,
                               std::string_view attributes) {
             std::vector<std::pair<double, std::optional<double>>> places;
@@ -280,28 +333,26 @@ class FigureDrawing {
         const auto addPoint = [&](const tables::FigurePoint& point, double size,
                                   std::string_view attributes, std::string_view what) {
             if (!point.y || !plane.x.shows(point.x) || !plane.y.shows(*point.y)) return;
-            std::string title =
-                point.remark.empty()
-                    ? fmt::format("{}{}: {:.6g}, {:.6g}", curve.name, what, point.x, *point.y)
-                    : point.remark;
-            const double x = plane.xOf(point.x);
-            if (point.bounds != tables::Bounds::None && !std::isnan(point.interval.low) &&
-                !std::isnan(point.interval.high)) {
-                const auto at = [&](double end) {
-                    return plane.yOf(std::clamp(end, plane.y.low, plane.y.high));
-                };
-                bars += intervalBar(x, at(point.interval.low), at(point.interval.high));
-                title += fmt::format(" ({} {:.6g} – {:.6g})", tables::boundsName(point.bounds),
-                                     point.interval.low, point.interval.high);
+            const double x = plane.xOf(point.x), y = plane.yOf(*point.y);
+            const auto within = [](double end, const PlotAxis& axis) {
+                return std::clamp(end, axis.low, axis.high);
+            };
+            if (hasEnds(point.bounds, point.interval)) {
+                bars += intervalBar(x, plane.yOf(within(point.interval.low, plane.y)),
+                                    plane.yOf(within(point.interval.high, plane.y)));
             }
-            markers += marker(style, x, plane.yOf(*point.y), size, attributes, title);
+            if (hasEnds(point.xBounds, point.xInterval)) {
+                bars += intervalBar(y, plane.xOf(within(point.xInterval.low, plane.x)),
+                                    plane.xOf(within(point.xInterval.high, plane.x)), Along::X);
+            }
+            markers += marker(style, x, y, size, attributes, pointText(panel, curve, point, what));
         };
         for (const auto& point : curve.points)
             addPoint(point, isOverNames() ? kSmallPoint : kMeasured, "stroke=\"none\"", "");
-        for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, ", printed");
+        for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, "printed");
         const std::string_view line = isOverNames() ? kFaint : "stroke-width=\"1.8\"";
         const std::string drawn = group(style.colour, path(curve.points, line) + bars + markers);
-        svg_ += isOverNames() ? drawn + reference : reference + drawn;
+        return isOverNames() ? drawn + reference : reference + drawn;
     }
 
     const tables::Figure& figure_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
 
@@ -19,7 +18,7 @@ using claims::ClaimResult;
 using claims::Verdict;
 using records::Status;
 
-// What ran on what, and which pictures stand for a document.
+// What ran on what.
 
 namespace {
 
@@ -61,7 +60,7 @@ std::string sizeText(const ReportRun& run) {
     return text;
 }
 
-/// "7 real, 6 stand-ins, 12 generated" and each by name.
+/// "7 real; 6 in the place of models that were not at hand; 12 generated" and each by name.
 std::string scenesHtml(const Json& manifest) {
     if (!manifest.is_object() || !manifest.contains("scenes")) return "";
     std::map<std::string, std::vector<std::string>> ofKind;
@@ -71,8 +70,11 @@ std::string scenesHtml(const Json& manifest) {
     }
     std::string html;
     for (const auto& [kind, names] : ofKind) {
-        html += fmt::format("{}{} {} <span class=\"soft\">({})</span>", html.empty() ? "" : "; ",
-                            names.size(), escapeXml(kind), escapeXml(joined(names)));
+        const bool isStandIn = kind == "stand-in";
+        html += fmt::format(
+            "{}{} {} <span class=\"soft\">({})</span>", html.empty() ? "" : "; ", names.size(),
+            isStandIn ? "in the place of models that were not at hand" : escapeXml(kind),
+            escapeXml(joined(names)));
     }
     return html;
 }
@@ -161,116 +163,7 @@ std::string factsHtml(const Model& model) {
     return html + "</tbody></table></div>\n";
 }
 
-/// The judged ones; the document's own come first, and of these those that fail.
-std::vector<const ClaimResult*> tellingClaims(const std::vector<ClaimResult>& claims) {
-    const auto rank = [](const ClaimResult* claim) {
-        return (claim->isCounted() ? 2 : 0) + (claim->verdict == Verdict::Fails ? 1 : 0);
-    };
-    std::vector<const ClaimResult*> telling;
-    for (const ClaimResult& claim : claims) {
-        const bool isJudged = claim.verdict == Verdict::Fails || claim.verdict == Verdict::Holds;
-        // A sentence that goes on from the one before says nothing alone.
-        if (isJudged && !claim.text.starts_with("…")) telling.push_back(&claim);
-    }
-    std::ranges::stable_sort(telling, std::greater<>(), rank);
-    return telling;
-}
-
-/// The pictures that the page shows first; the one that tells most of such a claim before others.
-std::vector<const Shot*> tellingShots(const RunPart& part, bool isFailing) {
-    std::vector<const Shot*> shots;
-    for (const std::size_t i : mainShots(part.shots, part.experiment->shows)) {
-        if (!part.shots[i].isTruth()) shots.push_back(&part.shots[i]);
-    }
-    std::ranges::stable_sort(shots, [&](const Shot* a, const Shot* b) {
-        if (a->flip.empty() != b->flip.empty()) return b->flip.empty();
-        if (!a->flip.empty()) {
-            return isFailing ? a->flipMean > b->flipMean : a->flipMean < b->flipMean;
-        }
-        return a->bytes > b->bytes;
-    });
-    return shots;
-}
-
-/// `count` of them, evenly over the list.
-std::vector<Highlight> spread(const std::vector<Highlight>& all, std::size_t count) {
-    if (all.size() <= count) return all;
-    std::vector<Highlight> chosen;
-    for (std::size_t i = 0; i < count; ++i) chosen.push_back(all[i * all.size() / count]);
-    return chosen;
-}
-
-/// Moves to `chosen` the first of `left` whose picture is least like those of its page there.
-void takeLeastAlike(const ShotDifference& difference, std::vector<Highlight>& left,
-                    std::vector<Highlight>& chosen) {
-    const auto isNew = [&](const Highlight& one) {
-        double least = 1.0;
-        for (const Highlight& other : chosen) {
-            if (other.page != one.page) continue;
-            least = std::min(least, difference(one.run, *one.shot, *other.shot));
-        }
-        return least;
-    };
-    const auto best = std::ranges::max_element(left, {}, isNew);
-    chosen.push_back(*best);
-    left.erase(best);
-}
-
-/// The mean difference of their PNGs' values below the run's folder; 1 where the sizes differ.
-double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b) {
-    const image::Image16 first = image::readPng16(runFolder / a.png);
-    const image::Image16 second = image::readPng16(runFolder / b.png);
-    if (first.width() != second.width() || first.height() != second.height() ||
-        first.channels() != second.channels()) {
-        return 1.0;
-    }
-    double sum = 0.0;
-    for (std::size_t i = 0; i < first.values().size(); ++i) {
-        sum += std::abs(int{first.values()[i]} - int{second.values()[i]});
-    }
-    return sum / (65535.0 * static_cast<double>(std::max<std::size_t>(first.values().size(), 1)));
-}
-
 }  // namespace
-
-std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
-                                    const ShotDifference& difference) {
-    std::vector<Highlight> failing, holding;
-    std::vector<std::vector<Highlight>> further;  // of each page, of its next claims
-    for (const Page* page : pages) {
-        for (std::size_t run = 0; run < page->parts.size(); ++run) {
-            const RunPart& part = page->parts[run];
-            const std::vector<const ClaimResult*> claims = tellingClaims(part.claims);
-            if (claims.empty() || !part.experiment || part.shots.empty()) continue;
-            const bool isFailing = claims[0]->verdict == Verdict::Fails;
-            const std::vector<const Shot*> shots = tellingShots(part, isFailing);
-            if (shots.empty()) continue;
-            (isFailing ? failing : holding).push_back({page, run, shots[0], claims[0]});
-            std::vector<Highlight>& others = further.emplace_back();
-            for (std::size_t i = 1; i < std::min(claims.size(), shots.size()); ++i) {
-                others.push_back({page, run, shots[i], claims[i]});
-            }
-            break;
-        }
-    }
-    const std::size_t fewest = std::min(holding.size(), kHighlights / 2);
-    const std::vector<Highlight> bad = spread(failing, kHighlights - fewest);
-    std::vector<Highlight> chosen = spread(holding, kHighlights - bad.size());
-    chosen.insert(chosen.end(), bad.begin(), bad.end());
-    const bool areAllShown = chosen.size() == failing.size() + holding.size();
-    std::vector<Highlight> left;
-    for (std::size_t i = 0; areAllShown && i < kHighlights; ++i) {
-        for (const std::vector<Highlight>& others : further) {
-            if (i < others.size()) left.push_back(others[i]);
-        }
-    }
-    const std::size_t missing = std::min(left.size(), kHighlights - chosen.size());
-    for (std::size_t i = 0; i < missing; ++i) takeLeastAlike(difference, left, chosen);
-    std::ranges::stable_sort(chosen, {}, [&](const Highlight& one) {
-        return std::ranges::find(pages, one.page) - pages.begin();
-    });
-    return chosen;
-}
 
 // What reproduced and what did not, and every claim.
 
@@ -279,7 +172,7 @@ namespace {
 constexpr std::array kVerdicts = {Verdict::Holds, Verdict::Fails, Verdict::Ambiguous,
                                   Verdict::Unmeasured, Verdict::NotApplicable};
 /// More examples than these are no summary.
-constexpr std::size_t kExamples = 3;
+constexpr std::size_t kExamples = 2;
 
 using Counts = std::map<Verdict, std::size_t>;
 
@@ -306,21 +199,26 @@ Counts countClaims(const std::vector<const Page*>& pages, std::size_t run,
     return counts;
 }
 
-/// "9 hold · 2 fail · 1 ambiguous".
-std::string countsText(const Counts& counts) {
-    std::string text;
-    for (const Verdict verdict : kVerdicts) {
-        const std::size_t count = countOf(counts, verdict);
-        if (count == 0) continue;
-        const std::string word = verdict == Verdict::Holds   ? count == 1 ? "holds" : "hold"
-                                 : verdict == Verdict::Fails ? count == 1 ? "fails" : "fail"
-                                                             : std::string(verdictName(verdict));
-        text += fmt::format("{}{} {}", text.empty() ? "" : " · ", count, word);
-    }
-    return text;
+/// "2 hold", "1 ambiguous".
+std::string countText(Verdict verdict, std::size_t count) {
+    const std::string word = verdict == Verdict::Holds && count != 1 ? "hold"
+                             : verdict == Verdict::Fails && count != 1
+                                 ? "fail"
+                                 : std::string(verdictName(verdict));
+    return fmt::format("{} {}", count, word);
 }
 
-/// The shares as lengths; each names itself by its sign and number.
+/// "9 hold · 2 fail · 1 ambiguous".
+std::string countsText(const Counts& counts) {
+    std::vector<std::string> parts;
+    for (const Verdict verdict : kVerdicts) {
+        const std::size_t count = countOf(counts, verdict);
+        if (count > 0) parts.push_back(countText(verdict, count));
+    }
+    return joined(parts, " · ");
+}
+
+/// The shares as lengths; each names itself by its sign, number and word, as far as it has room.
 std::string tallyHtml(const Counts& counts) {
     std::string html =
         fmt::format("<div class=\"tally\" role=\"img\" aria-label=\"{}\">", countsText(counts));
@@ -328,7 +226,8 @@ std::string tallyHtml(const Counts& counts) {
         const std::size_t count = countOf(counts, verdict);
         if (count == 0) continue;
         html += fmt::format("<span class=\"{}\" style=\"flex-grow:{}\">{} {}</span>",
-                            verdictName(verdict), count, verdictSign(verdict), count);
+                            verdictName(verdict), count, verdictSign(verdict),
+                            countText(verdict, count));
     }
     return html + "</div>\n";
 }
@@ -354,22 +253,27 @@ std::vector<std::pair<const Page*, const ClaimResult*>> examples(const DocumentP
     return first;
 }
 
-std::string examplesHtml(const char* before, const DocumentPages& document, Verdict verdict,
-                         std::size_t count) {
-    std::string items;
+std::string titledLink(const Page& page) {
+    const std::string rest = page.isOwn() ? "" : fmt::format(" {}", escapeXml(page.title));
+    return fmt::format("<a href=\"#{}\">{}</a>{}", escapeXml(page.slug),
+                       escapeXml(page.isOwn() ? page.title : page.label), rest);
+}
+
+/// Statements alone do not say of what they speak: before each stands its table's title.
+std::string examplesHtml(const DocumentPages& document, Verdict verdict) {
+    std::string html;
     for (const auto& [page, claim] : examples(document, verdict)) {
-        items += fmt::format("{}“{}” ({})", items.empty() ? "" : "; ", escapeXml(claim->text),
-                             pageLink(*page));
+        html += fmt::format("<li>{} {}: “{}”</li>\n", verdictBadge(verdict), titledLink(*page),
+                            escapeXml(claim->text));
     }
-    if (items.empty()) return "";
-    return fmt::format("{}{}: {}. ", before, count > kExamples ? ", among others" : "", items);
+    return html;
 }
 
 /// What one could judge, what of it holds, and what does not.
 std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
     const std::size_t holding = countOf(own, Verdict::Holds);
     const std::size_t failing = countOf(own, Verdict::Fails);
-    const std::size_t open = countOf(own, Verdict::Ambiguous) + countOf(own, Verdict::Unmeasured);
+    const std::size_t untold = countOf(own, Verdict::Ambiguous) + countOf(own, Verdict::Unmeasured);
     const std::size_t elsewhere = countOf(own, Verdict::NotApplicable);
     std::string html = fmt::format(
         "Of {} statement{} of the document, {} could be judged here: <strong>{} hold{}</strong>, "
@@ -397,10 +301,14 @@ std::string paragraphHtml(const DocumentPages& document, const Counts& own) {
             "leaves open. ",
             resting, resting == 1 ? "s" : "");
     }
-    if (open > 0) html += fmt::format("The numbers of {} do not tell. ", open);
+    if (untold > 0) html += fmt::format("Of {} the numbers do not tell. ", untold);
     if (elsewhere > 0) html += fmt::format("{} ask for a GPU or another profile. ", elsewhere);
-    return html + examplesHtml("Reproduced", document, Verdict::Holds, holding) +
-           examplesHtml("Not reproduced", document, Verdict::Fails, failing);
+    if (holding > kExamples || failing > kExamples) html += "Among those that were judged:";
+    html = fmt::format("<p>{}</p>\n", html);
+    const std::string examples =
+        examplesHtml(document, Verdict::Holds) + examplesHtml(document, Verdict::Fails);
+    if (examples.empty()) return html;
+    return html + "<ul class=\"examples\">\n" + examples + "</ul>\n";
 }
 
 std::string chaptersHtml(const DocumentPages& document) {
@@ -413,6 +321,21 @@ std::string chaptersHtml(const DocumentPages& document) {
             fmt::format("<li><span>{}</span>{}</li>\n", escapeXml(chapter.title), tallyHtml(own));
     }
     return html.empty() ? "" : "<ul class=\"chapters\">\n" + html + "</ul>\n";
+}
+
+/// The mean difference of their PNGs' values below the run's folder; 1 where the sizes differ.
+double shotDifference(const std::filesystem::path& runFolder, const Shot& a, const Shot& b) {
+    const image::Image16 first = image::readPng16(runFolder / a.png);
+    const image::Image16 second = image::readPng16(runFolder / b.png);
+    if (first.width() != second.width() || first.height() != second.height() ||
+        first.channels() != second.channels()) {
+        return 1.0;
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < first.values().size(); ++i) {
+        sum += std::abs(int{first.values()[i]} - int{second.values()[i]});
+    }
+    return sum / (65535.0 * static_cast<double>(std::max<std::size_t>(first.values().size(), 1)));
 }
 
 std::string highlightsHtml(const DocumentPages& document, const Model& model) {
@@ -433,7 +356,8 @@ std::string highlightsHtml(const DocumentPages& document, const Model& model) {
     return html.empty() ? "" : "<div class=\"highlights\">\n" + html + "</div>\n";
 }
 
-/// What of a document reproduced: a bar, a paragraph, a bar for each chapter, pictures.
+/// What of a document reproduced: a bar, a paragraph, a bar for each chapter, how near its numbers
+/// come, pictures.
 std::string documentHtml(const DocumentPages& document, const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < model.runs.size(); ++run) {
@@ -448,7 +372,7 @@ std::string documentHtml(const DocumentPages& document, const Model& model) {
         }
         if (!own.empty()) {
             html += tallyHtml(own);
-            if (run == 0) html += fmt::format("<p>{}</p>\n", paragraphHtml(document, own));
+            if (run == 0) html += paragraphHtml(document, own);
         }
         if (!others.empty()) {
             html += fmt::format(
@@ -458,24 +382,26 @@ std::string documentHtml(const DocumentPages& document, const Model& model) {
                 countsText(others));
         }
     }
-    if (html.empty()) return "";
+    std::string near;
+    for (std::size_t run = 0; run < model.runs.size(); ++run) {
+        near += nearnessHtml(document, model, run);
+    }
+    if (html.empty() && near.empty()) return "";
     if (!model.isComparison()) html += chaptersHtml(document);
+    if (!near.empty()) {
+        html = fmt::format("<div class=\"beside\">\n<div>\n{}</div>\n<div>\n{}</div>\n</div>\n",
+                           html, near);
+    }
     return fmt::format("<section class=\"document\">\n<h2>{}{}</h2>\n{}{}</section>\n",
                        escapeXml(document.id),
                        document.title.empty() ? "" : fmt::format(". {}", escapeXml(document.title)),
                        html, highlightsHtml(document, model));
 }
 
-std::string titledLink(const Page& page) {
-    const std::string rest = page.isOwn() ? "" : fmt::format(" {}", escapeXml(page.title));
-    return fmt::format("<a href=\"#{}\">{}</a>{}", escapeXml(page.slug),
-                       escapeXml(page.isOwn() ? page.title : page.label), rest);
-}
-
 /// Every table with its claims in words, chapter by chapter.
 std::string saidHtml(const Model& model) {
-    std::string html = "<div class=\"said\">\n";
     const std::vector<DocumentPages> documents = model.byDocument();
+    std::string html = "<div class=\"said\">\n";
     for (const DocumentPages& document : documents) {
         for (const DocumentPages::ChapterPages& chapter : document.chapters) {
             html += fmt::format("<section class=\"chapter\" data-paper=\"{}\">\n",
@@ -497,14 +423,14 @@ std::string saidHtml(const Model& model) {
     return html + "</div>\n";
 }
 
-/// Verdicts that are not what the configs know.
-std::string newsSection(const Model& model) {
+/// Verdicts other than those that the configs expect.
+std::string unexpectedHtml(const Model& model) {
     std::string items;
     for (const Page& page : model.pages) {
         for (std::size_t run = 0; run < page.parts.size(); ++run) {
             for (const ClaimResult& claim : page.parts[run].claims) {
                 if (!claim.isNews()) continue;
-                items += fmt::format("<li>{}{} <strong>{}</strong>: {} ({}); known: {}</li>\n",
+                items += fmt::format("<li>{}{} <strong>{}</strong>: {} ({}); expected: {}</li>\n",
                                      model.prefix(run), pageLink(page), verdictName(claim.verdict),
                                      escapeXml(claim.text.empty() ? claim.id : claim.text),
                                      escapeXml(claim.id), verdictName(*claim.known));
@@ -512,7 +438,7 @@ std::string newsSection(const Model& model) {
         }
     }
     if (items.empty()) return "";
-    return fmt::format("<h3>What is news</h3>\n<ul>\n{}</ul>\n", items);
+    return fmt::format("<h3>Other verdicts than expected</h3>\n<ul>\n{}</ul>\n", items);
 }
 
 /// Cells without a value, by table: what keeps this run from being whole.
@@ -578,8 +504,8 @@ std::string overviewHtml(const Model& model) {
     if (hasClaims && !model.isOneTable())
         html += "<h3>What the verdicts mean</h3>\n" + legendHtml();
     html += fmt::format("<h2>{}</h2>\n", hasClaims ? "Every claim, in words" : "All tables");
-    return html + filtersHtml(model) + saidHtml(model) + newsSection(model) + missingHtml(model) +
-           "<h3>Machine and run</h3>\n" + factsHtml(model) + "</section>\n";
+    return html + filtersHtml(model) + saidHtml(model) + unexpectedHtml(model) +
+           missingHtml(model) + "<h3>Machine and run</h3>\n" + factsHtml(model) + "</section>\n";
 }
 
 }  // namespace gfxrepro::report

@@ -1,6 +1,7 @@
 // The page of a table, with its claims and cases.
 #include <fmt/format.h>
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "runner/config/schema.h"
@@ -22,15 +23,22 @@ struct VerdictWords {
     Verdict verdict;
     const char* sign;
     const char* meaning;
+    const char* ofOne;  // "1 holds"
+    const char* ofSeveral;
 };
 constexpr VerdictWords kWords[] = {
-    {Verdict::Holds, "✓", "what was measured agrees with the statement"},
+    {Verdict::Holds, "✓", "what was measured agrees with the statement", "holds", "hold"},
     {Verdict::Fails, "✗",
      "on this machine, with these scenes, our implementation does not show what the document says: "
-     "a result, no error of the run, with its reason beside it"},
-    {Verdict::Ambiguous, "?", "the numbers are too few or scatter too much to tell"},
-    {Verdict::Unmeasured, "○", "a case that it needs has no result"},
-    {Verdict::NotApplicable, "–", "it asks for a GPU, or for another profile"},
+     "a result, no error of the run, with its reason beside it",
+     "fails", "fail"},
+    {Verdict::Ambiguous, "?", "the numbers are too few or scatter too much to tell",
+     "cannot be told", "cannot be told"},
+    {Verdict::Unmeasured, "○", "a case that it needs has no result", "was not measured",
+     "were not measured"},
+    {Verdict::NotApplicable, "–",
+     "it asks for a GPU, for another profile, or for a scene that is like the printed one",
+     "is not judged here", "are not judged here"},
 };
 
 const VerdictWords& wordsOf(Verdict verdict) {
@@ -53,18 +61,46 @@ const ClaimResult* findClaim(const RunPart& part, const std::string& id) {
     return claim == part.claims.end() ? nullptr : &*claim;
 }
 
-/// Whose claim it is, of a time what kind, and why it is not counted although the document says it.
+/// Whose claim it is, as people read it.
+std::string_view originWords(config::ClaimSpec::Origin origin) {
+    using Origin = config::ClaimSpec::Origin;
+    switch (origin) {
+        case Origin::Document:
+            return "of the document";
+        case Origin::Derived:
+            return "read off its numbers";
+        case Origin::Ours:
+            return "an aim of ours";
+        case Origin::Definition:
+            return "true by construction";
+        case Origin::Calibrated:
+            return "of an input that was fitted";
+        case Origin::Existence:
+            return "can hardly fail";
+    }
+    return "";
+}
+
+/// What decides a time.
+std::string_view timeWords(config::ClaimSpec::TimeKind kind) {
+    using Kind = config::ClaimSpec::TimeKind;
+    if (kind == Kind::Algorithmic) return "a time that counts of work decide";
+    return kind == Kind::Architectural ? "a time that a GPU's units decide" : "a time as such";
+}
+
+/// Whose claim it is, of a time what decides it, and why it is not counted although the document
+/// says it.
 std::string whoseHtml(const ClaimResult& claim) {
-    std::string text(config::originName(claim.origin));
-    if (claim.timeKind) text += fmt::format(", {}", config::timeKindName(*claim.timeKind));
-    if (!claim.rows.empty()) text += fmt::format(", on {}", claim.rows);
-    if (claim.isRepeat) text += fmt::format(", counted as {}", claim.sameAs);
+    std::string text(originWords(claim.origin));
+    if (claim.timeKind) text += fmt::format("; {}", timeWords(*claim.timeKind));
+    if (!claim.rows.empty()) text += fmt::format("; on {}", claim.rows);
+    if (claim.isRepeat) text += fmt::format("; counted as {}", claim.sameAs);
     return escapeXml(text);
 }
 
 std::string newsHtml(const ClaimResult& claim) {
     if (!claim.isNews()) return "";
-    return fmt::format(" <span class=\"news\">news: known as {}</span>", verdictName(*claim.known));
+    return fmt::format(" <span class=\"news\">expected: {}</span>", verdictName(*claim.known));
 }
 
 std::string paragraph(const std::string& label, const std::string& text,
@@ -103,13 +139,26 @@ std::string shownByHtml(const ClaimResult& claim, const Model& model) {
                        model.findings, escapeXml(claim.shownBy), escapeXml(place));
 }
 
+/// What was measured beside what was asked for, in one line.
+std::string measuredHtml(const ClaimResult& claim, const tables::Table& table) {
+    const std::string required = requiredText(claim, table);
+    std::string html;
+    if (!claim.measured.empty()) {
+        html += fmt::format("<span class=\"soft\">measured </span>{}", escapeXml(claim.measured));
+    }
+    if (!required.empty()) {
+        html += fmt::format("{}<span class=\"soft\">asked for </span>{}", html.empty() ? "" : " · ",
+                            escapeXml(required));
+    }
+    return html.empty() ? "" : fmt::format("<p>{}</p>\n", html);
+}
+
 /// What was found in one run, below the claim's words.
 std::string detailHtml(const ClaimResult& claim, const tables::Table& table, const Model& model,
                        const std::string& letter, ClaimDetail detail) {
     std::string html;
     if (detail == ClaimDetail::Full) {
-        html += paragraph("measured ", claim.measured) +
-                paragraph("required ", requiredText(claim, table)) +
+        html += measuredHtml(claim, table) +
                 paragraph(claim.verdict == Verdict::Holds ? "noted: " : "why: ", whyText(claim)) +
                 shownByHtml(claim, model) + paragraph("rests on ", restsOnText(claim));
     } else if (claim.verdict != Verdict::Holds && claim.verdict != Verdict::NotApplicable) {
@@ -117,6 +166,11 @@ std::string detailHtml(const ClaimResult& claim, const tables::Table& table, con
     }
     if (html.empty() || letter.empty()) return html;
     return fmt::format("<div class=\"of-run\"><b>{}</b>\n{}</div>\n", letter, html);
+}
+
+/// A claim's place on the page of its table.
+std::string claimAnchor(const Page& page, const std::string& id) {
+    return escapeXml(fmt::format("{}:{}", page.slug, id));
 }
 
 std::string claimHtml(const Page& page, const std::string& id, const Model& model,
@@ -141,14 +195,16 @@ std::string claimHtml(const Page& page, const std::string& id, const Model& mode
     const std::string code =
         detail == ClaimDetail::Full
             ? escapeXml(id)
-            : fmt::format("<a href=\"#{}\">{}</a>", escapeXml(page.slug), escapeXml(id));
+            : fmt::format("<a href=\"#{}\">{}</a>", claimAnchor(page, id), escapeXml(id));
+    const std::string place =
+        detail == ClaimDetail::Full ? fmt::format(" id=\"{}\"", claimAnchor(page, id)) : "";
     return fmt::format(
-        "<li class=\"claim{}{}\" data-verdict=\"{}\" data-origin=\"{}\" data-text=\"{}\">"
+        "<li class=\"claim{}{}\"{} data-verdict=\"{}\" data-origin=\"{}\" data-text=\"{}\">"
         "<span class=\"verdicts\">{}</span> <span class=\"says\">{}</span> "
         "<span class=\"soft code\">{}, {}</span>\n{}</li>\n",
-        any->isCounted() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "", verdictNames,
-        config::originName(any->origin), escapeXml(id + ' ' + text), badges, escapeXml(text), code,
-        whoseHtml(*any), details);
+        any->isCounted() ? "" : " uncounted", verdicts.size() > 1 ? " differs" : "", place,
+        verdictNames, config::originName(any->origin), escapeXml(id + ' ' + text), badges,
+        escapeXml(text), code, whoseHtml(*any), details);
 }
 
 }  // namespace
@@ -200,10 +256,11 @@ std::string filtersHtml(const Model& model) {
     html +=
         "</select></label>\n<label>whose claim <select name=\"origin\"><option value=\"\">all"
         "</option>";
-    for (const std::string_view origin : config::kOrigins) {
-        const bool isChosen =
-            hasOwn && origin == config::originName(config::ClaimSpec::Origin::Document);
-        html += fmt::format("<option{}>{}</option>", isChosen ? " selected" : "", origin);
+    for (std::size_t i = 0; i < config::kOrigins.size(); ++i) {
+        const auto origin = static_cast<config::ClaimSpec::Origin>(i);
+        const bool isChosen = hasOwn && origin == config::ClaimSpec::Origin::Document;
+        html += fmt::format("<option value=\"{}\"{}>{}</option>", config::originName(origin),
+                            isChosen ? " selected" : "", originWords(origin));
     }
     html +=
         "</select></label>\n<label>words <input type=\"search\" name=\"text\" "
@@ -224,6 +281,73 @@ std::string filtersHtml(const Model& model) {
 // The page.
 
 namespace {
+
+/// "1 holds ✓, 2 fail ✗ ✗": each sign leads to its claim.
+std::string verdictsHtml(const Page& page, const RunPart& part, const ReportRun& run,
+                         const std::function<bool(const ClaimResult&)>& isSuch) {
+    struct Alike {
+        std::string one, several, signs;
+        std::size_t count = 0;
+    };
+    std::vector<Alike> parts;
+    for (const VerdictWords& words : kWords) {
+        // Of what is not judged here those that another device could tell stand apart.
+        for (const bool isOfGpu : {true, false}) {
+            Alike alike{words.ofOne, words.ofSeveral, ""};
+            if (isOfGpu) alike = {"asks for a GPU", "ask for a GPU", ""};
+            for (const ClaimResult& claim : part.claims) {
+                const bool asksForGpu = claim.verdict == Verdict::NotApplicable &&
+                                        run.context.deviceClass != "gpu" &&
+                                        claims::isOfGpu(claim.timeKind, part.table);
+                if (claim.verdict != words.verdict || asksForGpu != isOfGpu || !isSuch(claim))
+                    continue;
+                ++alike.count;
+                const std::string says = escapeXml(claim.text.empty() ? claim.id : claim.text);
+                alike.signs += fmt::format(
+                    " <a class=\"mark {0}\" href=\"#{1}\" title=\"{2}\" aria-label=\"{0}: "
+                    "{2}\">{3}</a>",
+                    verdictName(claim.verdict), claimAnchor(page, claim.id), says, words.sign);
+            }
+            if (alike.count > 0) parts.push_back(std::move(alike));
+        }
+    }
+    std::string html;
+    for (const Alike& alike : parts) {
+        html += fmt::format("{}{} {}{}", html.empty() ? "" : ", ", alike.count,
+                            alike.count == 1 ? alike.one : alike.several, alike.signs);
+    }
+    return html;
+}
+
+/// What became of the statements of this table, a line each run.
+std::string verdictLineHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const RunPart& part = page.parts[run];
+        if (part.claims.empty()) continue;
+        const auto counted =
+            static_cast<std::size_t>(std::ranges::count_if(part.claims, &ClaimResult::isCounted));
+        const std::size_t others = part.claims.size() - counted;
+        std::string line;
+        if (counted > 0) {
+            line = fmt::format("Of {} statement{} of the document {}. ", counted,
+                               counted == 1 ? "" : "s",
+                               verdictsHtml(page, part, model.runs[run], &ClaimResult::isCounted));
+        }
+        if (others > 0) {
+            // They are not the document's own, say what another does, or can hardly fail.
+            line += fmt::format(
+                "<span{}>Of {} {}claim{}{} {}.</span>", page.isOwn() ? "" : " class=\"soft\"",
+                others, counted > 0 ? "further " : "", others == 1 ? "" : "s",
+                page.isOwn()  ? ""
+                : others == 1 ? " that is not counted"
+                              : " that are not counted",
+                verdictsHtml(page, part, model.runs[run], std::not_fn(&ClaimResult::isCounted)));
+        }
+        html += fmt::format("<p class=\"verdict-line\">{}{}</p>\n", model.boldLetter(run), line);
+    }
+    return html;
+}
 
 std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
                             const tables::Words& words) {
@@ -261,6 +385,43 @@ std::string curvesHtml(const Page& page, const Model& model) {
         }
     }
     return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";
+}
+
+/// Which methods are told apart, and by how much: before the table that shows it.
+std::string comparisonHtml(const Page& page, const Model& model) {
+    std::string html;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const tables::Table& table = page.parts[run].table;
+        for (std::size_t i = 0; i < table.toldNotes; ++i) {
+            html += fmt::format("<p class=\"told\">{}{}</p>\n", model.boldLetter(run),
+                                escapeXml(table.notes[i]));
+        }
+    }
+    return html;
+}
+
+/// What else is to be known of the numbers, folded.
+std::string remarksHtml(const Page& page, const Model& model) {
+    const RunPart* shown = page.shown();
+    std::string html;
+    std::size_t count = 0;
+    const auto add = [&](const std::string& label, const std::string& text) {
+        html += paragraph(label, text);
+        count += text.empty() ? 0 : 1;
+    };
+    add("", shown->table.remark);
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const tables::Table& table = page.parts[run].table;
+        for (std::size_t i = table.toldNotes; i < table.notes.size(); ++i) {
+            add(model.prefix(run), table.notes[i]);
+        }
+    }
+    const std::string hardware =
+        paragraph("Printed numbers: ", shown->table.hardware, " class=\"small\"");
+    if (count == 0) return hardware;
+    return fmt::format(
+        "{}<details class=\"remarks\"><summary>Remarks: {}</summary>\n{}</details>\n", hardware,
+        count, html);
 }
 
 std::string failuresHtml(const Page& page, const Model& model) {
@@ -348,9 +509,9 @@ std::string pageHtml(const Page& page, const Model& model) {
     const char* heading = model.isOneTable() ? "h1" : "h2";
     std::string html = fmt::format(
         "<section class=\"page\" id=\"{0}\">\n<{1} tabindex=\"-1\">{2}</{1}>\n"
-        "<p class=\"soft small\">{3}</p>\n{4}",
+        "<p class=\"soft small\">{3}</p>\n{4}{5}",
         escapeXml(page.slug), heading, escapeXml(page.heading()), escapeXml(page.id),
-        model.isOneTable() ? machineHtml(model) : "");
+        verdictLineHtml(page, model), model.isOneTable() ? machineHtml(model) : "");
     std::string claims = claimsHtml(page, model, ClaimDetail::Full);
     if (!claims.empty()) claims = "<h3>Claims</h3>\n" + claims;
     if (!claims.empty() && model.isOneTable()) {
@@ -365,19 +526,9 @@ std::string pageHtml(const Page& page, const Model& model) {
     const bool isPicture = shown->experiment->kind == config::ExperimentKind::Figure ||
                            !shown->experiment->shows.empty();
     if (isPicture) html += images;
-    constexpr const char* kSmall = " class=\"small\"";
-    html += tableHtml(page, model);
-    html += paragraph("Printed numbers: ", shown->table.hardware, kSmall);
-    html += paragraph("Remark: ", shown->table.remark, kSmall);
-    for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        const tables::Table& table = page.parts[run].table;
-        for (std::size_t i = 0; i < table.notes.size(); ++i) {
-            html += paragraph(model.prefix(run), table.notes[i],
-                              i < table.toldNotes ? kSmall : " class=\"small soft\"");
-        }
-    }
-    html += curvesHtml(page, model);
+    html += comparisonHtml(page, model) + tableHtml(page, model) + remarksHtml(page, model);
     html += claims;
+    html += curvesHtml(page, model);
     html += failuresHtml(page, model);
     if (!isPicture) html += images;
     html += assumptionsHtml(shown->experiment->assumptions, shown->table.words);

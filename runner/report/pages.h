@@ -156,6 +156,11 @@ std::string verdictBadge(claims::Verdict verdict);
 std::string verdictSign(claims::Verdict verdict);
 /// "A-0123456789ab": a case's place in the file.
 std::string caseAnchor(std::size_t run, const std::string& caseId);
+/// A cell's place in the file: its row and column in the table of that run.
+std::string cellAnchor(const Page& page, std::size_t run, std::size_t row, std::size_t column);
+/// How near the run comes to the printed numbers of a document, as a sentence, a plot and CSV;
+/// empty where nothing was measured at the printed parameters.
+std::string nearnessHtml(const DocumentPages& document, const Model& model, std::size_t run);
 /// A link to the page, of its label.
 std::string pageLink(const Page& page);
 

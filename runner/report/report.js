@@ -138,6 +138,68 @@
     row.addEventListener('keydown', e => { if (e.key === 'Enter') keepCases(row); });
   }
 
+  // --- curves: a point tells its numbers; a click on a name takes its curve away and brings it back ---
+
+  const tip = document.createElement('div');
+  tip.className = 'tip';
+  tip.hidden = true;
+  document.body.append(tip);
+  const kReach = 24;  // pixels from a point
+
+  function leavePoint(svg) {
+    tip.hidden = true;
+    all('.at', svg).forEach(mark => mark.classList.remove('at'));
+  }
+
+  // What a mark says of itself stands in its title, which the browser would show, too, but late.
+  function marksOf(svg) {
+    for (const title of all('g title, a title', svg)) {
+      title.parentNode.dataset.says = title.textContent;
+      title.remove();
+    }
+    return all('[data-says]', svg);
+  }
+
+  function tellPoint(svg, event) {
+    leavePoint(svg);
+    let nearest = null;
+    let least = kReach;
+    for (const mark of marksOf(svg)) {
+      if (mark.closest('.off')) continue;
+      const box = mark.getBoundingClientRect();
+      const distance = Math.hypot(box.left + box.width / 2 - event.clientX, box.top + box.height / 2 - event.clientY);
+      if (distance < least) [nearest, least] = [mark, distance];
+    }
+    if (!nearest) return;
+    nearest.classList.add('at');
+    tip.textContent = nearest.dataset.says;
+    tip.hidden = false;
+    const box = tip.getBoundingClientRect();
+    tip.style.left = `${Math.max(4, Math.min(event.clientX + 12, innerWidth - box.width - 8))}px`;
+    tip.style.top = `${event.clientY > innerHeight / 2 ? event.clientY - box.height - 12 : event.clientY + 16}px`;
+  }
+
+  function switchCurve(figure, which) {
+    for (const part of all(`[data-name="${which}"], [data-curve="${which}"]`, figure)) {
+      const isOff = part.classList.toggle('off');
+      if (part.dataset.name) part.setAttribute('aria-pressed', !isOff);
+    }
+  }
+
+  for (const figure of all('.curve, .near')) {
+    for (const svg of all('svg', figure)) {
+      for (const kind of ['pointermove', 'pointerdown']) svg.addEventListener(kind, e => tellPoint(svg, e));
+      svg.addEventListener('pointerleave', () => leavePoint(svg));
+    }
+    for (const name of all('[data-name]', figure)) {
+      name.setAttribute('role', 'button');
+      name.setAttribute('aria-pressed', true);
+      name.setAttribute('tabindex', 0);
+      name.addEventListener('click', () => switchCurve(figure, name.dataset.name));
+      name.addEventListener('keydown', e => { if (e.key === 'Enter') switchCurve(figure, name.dataset.name); });
+    }
+  }
+
   // A click on a command selects it, ready to be copied.
   document.addEventListener('click', e => {
     const command = e.target.closest('.command');

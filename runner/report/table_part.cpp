@@ -1,6 +1,7 @@
 // The table of a page: the tables of several runs laid over one another.
 #include <fmt/format.h>
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +12,7 @@
 #include "runner/report/markup.h"
 #include "runner/report/pages.h"
 #include "runner/tables/labels.h"
+#include "runner/tables/nearness.h"
 #include "runner/tables/printed.h"
 #include "runner/tables/table.h"
 
@@ -25,7 +27,9 @@ namespace {
 /// All rows and columns that any of the tables has: runs of other profiles have other rows.
 class Overlay {
   public:
-    explicit Overlay(const Page& page);
+    /// With the columns of which `isShown`; of which it is not, they are as if no table had them.
+    explicit Overlay(const Page& page,
+                     const std::function<bool(const Table&, std::size_t)>& isShown);
 
     const std::vector<std::size_t>& runs() const { return runs_; }
     const std::vector<tables::TableColumn>& columns() const { return columns_; }
@@ -68,16 +72,19 @@ class Overlay {
     std::vector<std::vector<std::string>> rows_;
 };
 
-Overlay::Overlay(const Page& page) {
+Overlay::Overlay(const Page& page, const std::function<bool(const Table&, std::size_t)>& isShown) {
     std::set<std::vector<std::string>> seen;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
         if (!page.parts[run].experiment) continue;
         const Table& table = page.parts[run].table;
         runs_.push_back(run);
         tables_.push_back(&table);
-        for (const tables::TableColumn& column : table.columns) {
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            const tables::TableColumn& column = table.columns[i];
             const auto isSame = [&](const auto& known) { return known.label == column.label; };
-            if (std::ranges::none_of(columns_, isSame)) columns_.push_back(column);
+            if (std::ranges::none_of(columns_, isSame) && isShown(table, i)) {
+                columns_.push_back(column);
+            }
         }
         std::map<std::vector<std::string>, const TableRow*>& byLabels = rowOf_.emplace_back();
         for (const TableRow& row : table.rows) {
@@ -217,13 +224,15 @@ std::string titleOf(const Cell& cell) {
     return cell.openParameters.empty() ? "" : "not given: " + tables::openText(cell.openParameters);
 }
 
-std::string cellHtml(const Cell* cell, std::size_t run) {
+/// `place`: its id in the file, where something leads to it.
+std::string cellHtml(const Cell* cell, std::size_t run, const std::string& place) {
     if (!cell || !cell->isPlanned) return "<td></td>";
     std::string anchors;
     for (const std::string& id : cell->caseIds) anchors += caseAnchor(run, id) + ' ';
     if (!anchors.empty()) anchors.pop_back();
     std::string attributes =
         anchors.empty() ? "" : fmt::format(" data-cases=\"{}\"", escapeXml(anchors));
+    if (!place.empty()) attributes += fmt::format(" id=\"{}\"", place);
     if (const std::string title = titleOf(*cell); !title.empty()) {
         attributes += fmt::format(" title=\"{}\"", escapeXml(title));
     }
@@ -279,7 +288,24 @@ std::size_t heightOf(const Overlay& overlay, std::size_t row, std::size_t axis) 
 
 using ShownLabels = std::vector<std::map<std::string, std::string>>;  // beside the row axes
 
-std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& shown) {
+/// Of each cell that a point of a document's plot leads to its place in the file.
+using CellPlaces = std::map<const Cell*, std::string>;
+
+CellPlaces cellPlaces(const Page& page) {
+    CellPlaces places;
+    for (std::size_t run = 0; run < page.parts.size(); ++run) {
+        const RunPart& part = page.parts[run];
+        if (!part.experiment) continue;
+        for (const auto& near : tables::nearnessOf(*part.experiment, part.table).cells) {
+            places[&part.table.rows[near.row].cells[near.column]] =
+                cellAnchor(page, run, near.row, near.column);
+        }
+    }
+    return places;
+}
+
+std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& shown,
+                    const CellPlaces& places) {
     const std::vector<std::string>& labels = overlay.rows()[row];
     std::string html = "<tr>";
     for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -290,7 +316,7 @@ std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& 
                             height > 1 ? "rowgroup" : "row", i == 0 ? " class=\"first\"" : "",
                             height > 1 ? fmt::format(" rowspan=\"{}\"", height) : "",
                             escapeXml(labels[i]), escapeXml(shown[i].at(labels[i])),
-                            isMarked ? " <abbr title=\"stand-in\">†</abbr>" : "");
+                            isMarked ? " <abbr title=\"another model in its place\">†</abbr>" : "");
     }
     for (const tables::TableColumn& column : overlay.columns()) {
         if (overlay.hasPrinted(column.label)) {
@@ -299,8 +325,9 @@ std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& 
         }
         if (overlay.isOnlyPrinted()) continue;
         for (std::size_t i = 0; i < overlay.runs().size(); ++i) {
-            html +=
-                cellHtml(overlay.find(i, overlay.find(i, labels), column.label), overlay.runs()[i]);
+            const Cell* cell = overlay.find(i, overlay.find(i, labels), column.label);
+            const auto place = places.find(cell);
+            html += cellHtml(cell, overlay.runs()[i], place == places.end() ? "" : place->second);
         }
     }
     return html + "</tr>\n";
@@ -395,21 +422,44 @@ std::string absentRowsHtml(const Page& page) {
     return html + "</tbody></table></div></details>\n";
 }
 
+std::string resultsHtml(const Overlay& overlay, const Page& page, const Model& model) {
+    std::string html = "<div class=\"scroll\"><table class=\"results\">\n" +
+                       headHtml(overlay, model.isComparison()) + "<tbody>\n";
+    const ShownLabels shown = tables::shownLabels(overlay.rows(), overlay.first().words);
+    const CellPlaces places = cellPlaces(page);
+    for (std::size_t row = 0; row < overlay.rows().size(); ++row) {
+        html += rowHtml(overlay, row, shown, places);
+    }
+    return html + "</tbody></table></div>\n";
+}
+
 }  // namespace
 
 std::string tableHtml(const Page& page, const Model& model) {
-    const Overlay overlay(page);
+    // Of a table that nobody laid out the steps of a frame stand folded below what they come to.
+    const bool isLaidOut = !page.shown() || !page.shown()->experiment->hasDefaultLayout();
+    const auto isStep = [&](const Table& table, std::size_t column) {
+        return !isLaidOut && std::ranges::any_of(table.rows, [&](const TableRow& row) {
+            const std::string& metric = row.cells[column].metric;
+            return metric == "gpu_time_ms" || metric == "cpu_time_ms";
+        });
+    };
+    Overlay steps(page, isStep);
+    Overlay overlay(page, std::not_fn(isStep));
+    if (overlay.isEmpty()) std::swap(steps, overlay);
     if (overlay.isEmpty()) return "";
     std::string html = parametersHtml(page, model) + constantsHtml(page) +
-                       "<div class=\"scroll\"><table class=\"results\">\n" +
-                       headHtml(overlay, model.isComparison()) + "<tbody>\n";
-    bool hasStandIn = false;
-    const ShownLabels shown = tables::shownLabels(overlay.rows(), overlay.first().words);
-    for (std::size_t row = 0; row < overlay.rows().size(); ++row) {
-        html += rowHtml(overlay, row, shown);
-        hasStandIn |= isStandIn(overlay, overlay.rows()[row]);
+                       resultsHtml(overlay, page, model) + absentRowsHtml(page);
+    if (!steps.isEmpty()) {
+        html += fmt::format(
+            "<details class=\"steps\"><summary>Times of {} step{} of a "
+            "frame</summary>\n{}</details>\n",
+            steps.columns().size(), steps.columns().size() == 1 ? "" : "s",
+            resultsHtml(steps, page, model));
     }
-    html += "</tbody></table></div>\n" + absentRowsHtml(page) + smallPrintHtml(page);
+    html += smallPrintHtml(page);
+    bool hasStandIn = false;
+    for (const auto& labels : overlay.rows()) hasStandIn |= isStandIn(overlay, labels);
     const auto isMarked = [&](std::size_t run) { return page.parts[run].table.hasCalibrated(); };
     if (std::ranges::any_of(overlay.runs(), isMarked)) {
         html += fmt::format("<p class=\"soft small\">{} {}.</p>\n", tables::kCalibratedMark,
@@ -423,8 +473,8 @@ std::string tableHtml(const Page& page, const Model& model) {
     }
     if (hasStandIn) {
         html +=
-            "<p class=\"soft small\">† a stand-in with the printed counts: the real model was "
-            "not at hand.</p>\n";
+            "<p class=\"soft small\">† measured on another model with the printed counts: the real "
+            "one was not at hand.</p>\n";
     }
     return html;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runner/claims/claims.h"
+#include "runner/config/experiment.h"
 #include "runner/records/records.h"
 #include "runner/tables/table.h"
 
@@ -20,6 +21,12 @@ namespace gfxrepro::report {
 /// table's notes, stand in the .tex, too.
 void writeTables(const std::filesystem::path& runDir, const std::vector<tables::Table>& tables,
                  const std::vector<std::string>& runNotes = {});
+
+/// nearness.csv: of every cell of a table at the printed parameters what was measured and printed,
+/// and their ratio (tables/nearness.h). None without such cells.
+void writeNearness(const std::filesystem::path& runDir,
+                   const std::vector<config::Experiment>& experiments,
+                   const std::vector<tables::Table>& tables);
 
 /// claims.csv (kClaimsColumns) and junit.xml: every case and every claim is a test with a name of
 /// its own. A case that failed is an error, a claim that fails a failure; a case that was left out

@@ -235,9 +235,9 @@ bool isBegun(const fs::path& folder) {
 /// write over; empty when there is none.
 std::string foreignFile(const fs::path& folder) {
     if (isBegun(folder)) return "";
-    for (const char* name :
-         {"manifest.json", "records.csv", "cases.csv", "claims.csv", "junit.xml", "report.html",
-          "journal.jsonl", "images", "tables", "plots", "thumbnails", kScratchFolder}) {
+    for (const char* name : {"manifest.json", "records.csv", "cases.csv", "claims.csv",
+                             "nearness.csv", "junit.xml", "report.html", "journal.jsonl", "images",
+                             "tables", "plots", "thumbnails", kScratchFolder}) {
         if (fs::exists(fs::symlink_status(folder / name))) return name;
     }
     return "";

@@ -234,6 +234,10 @@ class FigureMaker {
             point.y = cell.values[0].value;
             point.interval = cell.values[0].interval;
             point.bounds = cell.bounds();
+            if (!xAxis_) {
+                point.xInterval = row.cells[xColumn_].values[0].interval;
+                point.xBounds = row.cells[xColumn_].bounds();
+            }
         } else {
             point.remark = "cannot be drawn";
         }

@@ -17,6 +17,8 @@ struct FigurePoint {
     std::optional<double> y;
     metrics::Interval interval;
     Bounds bounds = Bounds::None;
+    metrics::Interval xInterval = {};  // of an x that was measured, too
+    Bounds xBounds = Bounds::None;
     /// Why there is a gap; of a point what it is, where it is not its curve's name and its numbers.
     std::string remark;
 };

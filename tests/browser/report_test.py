@@ -141,8 +141,9 @@ class Report(unittest.TestCase):
     def test_the_first_screen_says_what_reproduced(self):
         self.open()
         for selector, words in ((".machine", "quick profile"), (".document h2", "demo2026. A demonstration"),
-                                (".document > p", "Of 6 statements of the document, 4 could be judged here: 2 hold, 2 fail."),
-                                (".document > p", "Not reproduced: “the third is small” (Table 1)"),
+                                (".document p", "Of 6 statements of the document, 4 could be judged here: 2 hold, 2 fail."),
+                                (".examples li:last-child", "Table 2 Times <b>&</b> numbers: “the third is small”"),
+                                (".near figcaption", "How near: 2 printed numbers that are no times were measured"),
                                 (".legend-of-verdicts", "a result, no error of the run")):
             self.assertIn(words, self.browser.script("return document.querySelector(arguments[0]).textContent", selector))
         self.assertEqual(self.browser.script("return [...document.querySelectorAll('.chapters li > span')].map(s => s.textContent)"),
@@ -150,7 +151,7 @@ class Report(unittest.TestCase):
         self.assertEqual(self.shown(".highlights img"), 2, "table 1 alone has pictures: of two claims")
         self.assertIn("fails", self.browser.script("return document.querySelector('.highlights figcaption').textContent"))
         bars = self.browser.script("return [...document.querySelector('.tally').children].map(s => [s.textContent, s.getBoundingClientRect().width])")
-        self.assertEqual([text for text, _ in bars], ["✓ 2", "✗ 2", "○ 2"])
+        self.assertEqual([text for text, _ in bars], ["✓ 2 hold", "✗ 2 fail", "○ 2 unmeasured"])
         self.near([width for _, width in bars], [bars[0][1]] * 3, 2)
         self.assertIn("three is not below two",
                       self.browser.script("return document.querySelector('.said .claim[data-verdict=fails] p').textContent"))
@@ -228,6 +229,62 @@ class Report(unittest.TestCase):
             self.open("#" + slug)
             self.assertEqual(self.browser.script(text, f"#{slug} .parameters"), line)
             self.assertEqual(self.shown(f"#{slug} .ratio"), ratios)
+
+    def top(self, selector):
+        return self.browser.script("return document.querySelector(arguments[0]).getBoundingClientRect().top", selector)
+
+    def test_a_page_begins_with_its_verdict_and_leads_to_the_claims(self):
+        for width, height in ((1440, 900), (1024, 800), (500, 844)):
+            self.browser.resize(width, height)
+            self.open("#demo2026-1")
+            line = self.browser.script("return document.querySelector('#demo2026-1 .verdict-line').textContent")
+            self.assertTrue(line.startswith("Of 3 statements of the document 1 holds ✓, 1 fails ✗, 1 was not measured ○."), line)
+            self.assertLess(self.top("#demo2026-1 .verdict-line"), self.top("#demo2026-1 .results"))
+            self.assertLess(self.top("#demo2026-1 .verdict-line"), 300, "on the first screen")
+        self.browser.resize(1300, 500)
+        self.browser.click("#demo2026-1 .mark.fails")
+        self.browser.wait("return document.querySelector('.claim:target')")
+        self.assertEqual(self.browser.script("return document.querySelector('.claim:target .says').textContent"), "the third is small")
+        self.assertTrue(0 < self.top(".claim:target") < 500, "in sight")
+
+    def test_a_point_of_how_near_leads_to_its_cell(self):
+        self.open()
+        self.assertEqual(self.shown(".near circle"), 2)
+        self.browser.point(".near circle")
+        self.browser.wait("return document.querySelector('.tip').checkVisibility()")
+        self.assertEqual(self.browser.script("return document.querySelector('.tip').textContent"),
+                         "Table 1, number 1: ok: 1 measured, 2 printed, ×0.5")
+        self.browser.screenshot(OUT / "near.png")
+        self.browser.click(".near a[tabindex] circle")
+        self.browser.wait("return document.querySelector('td:target')")
+        self.assertIn("1.0", self.browser.script("return document.querySelector('td:target').textContent"))
+        self.assertEqual(self.shown("#demo2026-1"), 1)
+
+    def test_a_curve_tells_its_numbers_and_can_be_taken_away(self):
+        shutil.rmtree(OUT / "curves", ignore_errors=True)
+        shutil.copytree(self.folder, OUT / "curves")
+        data = OUT / "curves-data"
+        shutil.rmtree(data, ignore_errors=True)
+        shutil.copytree(self.data, data)
+        config = data / "configs" / "demo2026" / "table-1.yaml"
+        config.write_text(config.read_text().replace("plots: [{x: number, y: ok}]", "plots: [{x: number, y: [ok, throw]}]")
+                          .replace("behaviour: throw", "behaviour: ok"))
+        folder = make_run(data, OUT / "curves", "demo2026/1")
+        for width, kind in ((1300, "wide"), (500, "narrow")):
+            self.browser.resize(width, 900)
+            self.open("", folder)
+            numbers = self.browser.script("return [...document.querySelectorAll(`.curve .${arguments[0]} g[data-curve='0'] title`)].map(t => t.textContent)", kind)
+            self.assertIn("ok: number 2, number 2", numbers)
+            self.browser.point(f".curve .{kind} g[data-curve='0'] circle")
+            self.browser.wait("return document.querySelector('.tip').checkVisibility()")
+            self.assertIn(self.browser.script("return document.querySelector('.tip').textContent"), numbers)
+            self.browser.screenshot(OUT / f"curve-{kind}.png")
+            self.assertEqual(self.shown(f".curve .{kind} [data-curve]:not(.off)"), 2)
+            self.browser.click(f".curve .{kind} [data-name='1'] text")
+            self.browser.wait("return document.querySelector('.curve [data-curve=\"1\"].off')")
+            self.assertEqual(self.browser.script("return document.querySelector('.curve [data-name=\"1\"]').getAttribute('aria-pressed')"), "false")
+            self.browser.click(f".curve .{kind} [data-name='1'] text")
+            self.browser.wait("return !document.querySelector('.curve .off')")
 
     def test_filters_choose_by_verdict_words_and_paper(self):
         self.open()

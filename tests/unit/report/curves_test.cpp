@@ -100,7 +100,7 @@ TEST(FigureSvg, PointsLieWhereTheDataSay) {
     EXPECT_THAT(svg, HasSubstr("d=\"M49.375 294L568.07 36.857\" fill=\"none\""));  // the line
     EXPECT_THAT(svg, HasSubstr("d=\"M23.44 36.857L594 36.857\""));                 // the rule at 20
     EXPECT_THAT(svg, HasSubstr("text-anchor=\"end\">20</text>"));
-    EXPECT_THAT(svg, HasSubstr("<title>one: 10, 20</title>"));
+    EXPECT_THAT(svg, HasSubstr("<title>size 10, time (ms) 20</title>"));
 }
 
 TEST(FigureSvg, LogarithmicAxesHaveTheirMiddleAtTheGeometricMean) {
@@ -118,9 +118,30 @@ TEST(FigureSvg, IntervalsReachFromEndToEnd) {
     EXPECT_THAT(svg, HasSubstr("d=\"M308.72 253.94L308.72 123.82\""));
     EXPECT_THAT(svg, HasSubstr("d=\"M304.22 253.94L313.22 253.94\""));
     EXPECT_THAT(svg, HasSubstr("d=\"M304.22 123.82L313.22 123.82\""));
-    EXPECT_THAT(svg, HasSubstr("<title>one: 5, 10 (95 % interval 5 – 15)</title>"));
+    EXPECT_THAT(svg, HasSubstr("<title>size 5, time (ms) 10 (95 % interval 5 – 15)</title>"));
     EXPECT_THAT(svg, HasSubstr(">95 % interval</text>"));  // the legend
     EXPECT_THAT(svgOf(figureOf({point(0, 20)})), Not(HasSubstr("interval")));
+}
+
+/// What both axes show was measured: an error over a time.
+TEST(FigureSvg, IntervalsOfBothAxes) {
+    tables::Figure figure = figureOf({point(0, 20), point(5, 20), point(10, 20)});
+    figure.panels[0].curves[0].points[1].xBounds = tables::Bounds::Interval;
+    figure.panels[0].curves[0].points[1].xInterval = {2.5, 7.5};
+    const std::string svg = svgOf(figure);
+    const auto level = findAll(svg, "d=\"M([\\d.]+) ([\\d.]+)L[\\d.]+ \\2\" stroke-width=\"1.2\"");
+    EXPECT_EQ(level.size(), 1U);
+    EXPECT_THAT(svg, HasSubstr("<title>size 5 (95 % interval 2.5 – 7.5), time (ms) 20</title>"));
+}
+
+/// A name and what it names are told by one number: a script takes them away together.
+TEST(FigureSvg, NamesSayWhichCurveTheyAre) {
+    const std::string svg = svgOf(twoCurves());
+    EXPECT_EQ(findAll(svg, "(<g data-name=\"[01]\">)").size(), 2U);
+    const std::size_t second = svg.find("<g data-curve=\"1\">");
+    ASSERT_NE(second, svg.npos);
+    EXPECT_GT(svg.find("<title>two, printed"), second);
+    EXPECT_LT(svg.find("<title>one: "), second);
 }
 
 /// On a logarithmic axis an interval may reach down to where nothing is.
@@ -151,10 +172,11 @@ TEST(FigureSvg, LeavesGaps) {
 
 TEST(FigureSvg, NamesWhatIsThere) {
     const std::string svg = svgOf(twoCurves());
-    for (const char* text : {">one</text>", ">two</text>", ">measured</text>", ">printed</text>",
-                             ">95 % interval</text>", ">size</text>", ">time (ms)</text>",
-                             ">left out: 1 of 4 values (1 crash)</text>",
-                             "<title>two, printed: 1, 0.2</title>", "<title>A title</title>"}) {
+    for (const char* text :
+         {">one</text>", ">two</text>", ">measured</text>", ">printed</text>",
+          ">95 % interval</text>", ">size</text>", ">time (ms)</text>",
+          ">left out: 1 of 4 values (1 crash)</text>",
+          "<title>two, printed: size 1, time (ms) 0.2</title>", "<title>A title</title>"}) {
         EXPECT_THAT(svg, HasSubstr(text));
     }
     EXPECT_THAT(svg,
@@ -185,7 +207,7 @@ TEST(FigureSvg, NightsHaveTheirNamesAndMarks) {
     const std::string svg = svgOf(figure);
     EXPECT_THAT(svg, HasSubstr(">2026-11-21</text>"));
     EXPECT_THAT(svg, HasSubstr("<title>2026-11-22, c1: 20 ms</title>"));
-    EXPECT_THAT(svg, HasSubstr("<title>one: 1, 10</title>"));
+    EXPECT_THAT(svg, HasSubstr("<title>size 1, time (ms) 10</title>"));
     EXPECT_THAT(svg, HasSubstr("fill=\"var(--fails)\">× 2.000</text>"));
     figure.panels[0].marks[0].isWorse = false;
     EXPECT_THAT(svgOf(figure), HasSubstr("stroke=\"var(--holds)\""));

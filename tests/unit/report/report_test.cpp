@@ -15,6 +15,7 @@
 #include "runner/claims/kept_claims.h"
 #include "runner/records/images.h"
 #include "runner/report/markup.h"
+#include "runner/report/writers.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
@@ -114,9 +115,10 @@ TEST_F(Report, IsOneSafeFile) {
              "src=\"data:image/png;base64,iVBORw0KGgo",
              "alt=\"&lt;img, x&gt; · surface\"",
              "<td>Xeon &lt;script&gt;</td>",
-             "<td>1 stand-in <span class=\"soft\">(models/duck)</span></td>",
+             "<td>1 in the place of models that were not at hand <span "
+             "class=\"soft\">(models/duck)</span></td>",
              "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
-             "title=\"models/duck\">duck <abbr title=\"stand-in\">†</abbr>",
+             "title=\"models/duck\">duck <abbr title=\"another model in its place\">†</abbr>",
              "<span class=\"badge fails\"><span aria-hidden=\"true\">✗</span> fails</span>",
              "<td title=\"padding\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
              "<td>not &lt;said&gt;</td>",
@@ -158,9 +160,10 @@ TEST_F(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
     run.claims[1].rows = "1 of 2 values of <scene>";
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
-    EXPECT_THAT(html, HasSubstr(">A, document, algorithmic, counted as zju2005/1 A</span>"));
-    EXPECT_THAT(html,
-                HasSubstr(">B, document, algorithmic, on 1 of 2 values of &lt;scene&gt;</span>"));
+    EXPECT_THAT(html, HasSubstr(">A, of the document; a time that counts of work decide; "
+                                "counted as zju2005/1 A</span>"));
+    EXPECT_THAT(html, HasSubstr(">B, of the document; a time that counts of work decide; on 1 of 2 "
+                                "values of &lt;scene&gt;</span>"));
     EXPECT_THAT(html, Not(HasSubstr("<li class=\"claim\"")));
 }
 
@@ -477,11 +480,105 @@ TEST_F(Report, LabelsAreReadForNames) {
     EXPECT_THAT(html, HasSubstr("title=\"scene\">model</th>"));
     EXPECT_THAT(html, HasSubstr("title=\"models/duck\">rubber duck"));
     EXPECT_THAT(html, HasSubstr(">time to draw <span"));
-    EXPECT_THAT(html, HasSubstr("<span class=\"soft\">required </span>time to draw [ms] ≤ 10 (the "
+    EXPECT_THAT(html, HasSubstr("<span class=\"soft\">asked for </span>time to draw [ms] ≤ 10 (the "
                                 "bound is from the printed numbers)</p>"));
     EXPECT_THAT(html, Not(HasSubstr(">rests on <"))) << "that none was tried is said once";
     EXPECT_THAT(html, HasSubstr("title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>"))
         << "what has none stays";
+}
+
+/// Before the numbers what became of the statements, each a click away.
+TEST_F(Report, APageBeginsWithItsVerdict) {
+    ReportRun run = runIn(folder.path());
+    run.experiments[0].claims[0].origin = config::ClaimSpec::Origin::Document;
+    run.experiments[0].claims[1].origin = config::ClaimSpec::Origin::Document;
+    run.experiments[0].claims[1].timeKind = config::ClaimSpec::TimeKind::Architectural;
+    run.experiments[0].printed.remark = "misprinted";
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    std::size_t at = html.find("<section class=\"page\" id=\"zju2005-9.9\">");
+    for (const char* part : {
+             "<p class=\"verdict-line\">Of 2 statements of the document 1 holds <a class=\"mark "
+             "holds\" href=\"#zju2005-9.9:A\" title=\"a &lt; b &amp; &quot;c&quot;\" "
+             "aria-label=\"holds: a &lt; b &amp; &quot;c&quot;\">✓</a>, 1 asks for a GPU <a "
+             "class=\"mark not-applicable\" href=\"#zju2005-9.9:B\"",
+             "Of 1 further claim that is not counted 1 was not measured ",
+             "<table class=\"results\">",
+             "<summary>Remarks: ",
+             "misprinted",
+             "<li class=\"claim\" id=\"zju2005-9.9:A\"",
+             "<p><span class=\"soft\">measured </span>8",
+             "<li class=\"claim\" id=\"zju2005-9.9:B\"",
+             "<span class=\"soft\">measured </span>8",  // beside what it asks of a GPU
+             "<span class=\"soft\">asked for </span>draw [ms] ≤ 1",
+         }) {
+        const std::size_t next = html.find(part, at);
+        ASSERT_NE(next, html.npos) << part;
+        at = next;
+    }
+}
+
+/// Of cells at the printed parameters how near they come: a sentence, points that lead to them,
+/// CSV.
+TEST_F(Report, SaysHowNearADocumentsNumbersCome) {
+    ReportRun run = runIn(folder.path());
+    run.experiments.push_back(run.experiments[0]);  // else its page comes first, and has all
+    run.experiments[1].id = "zju2005/9.8";
+    run.experiments[1].kind = config::ExperimentKind::Figure;
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    for (const char* part : {
+             "How near: 1 printed number that is no time was measured at the parameters that the "
+             "document gives: none lies within 10 % of the printed one, 1 within a factor of 2. Of "
+             "1 time or rate, printed on another machine, none lies within 10 % of the printed "
+             "one, 1 within a factor of 2.",
+             "<a href=\"#A-zju2005-9.9-0-1\" tabindex=\"-1\"><circle ",
+             "<title>Table 9.9, duck: draw [ms]: 8 measured, 16 printed, ×0.5</title>",
+             " id=\"A-zju2005-9.9-0-1\"",
+             "<a download=\"zju2005-nearness.csv\" href=\"data:text/csv;base64,",
+         }) {
+        EXPECT_THAT(html, HasSubstr(part));
+    }
+    writeNearness(folder.path(), run.experiments, run.tables);
+    const std::string csv = readFile(folder.path() / "nearness.csv");
+    EXPECT_THAT(csv, HasSubstr("zju2005/9.9,scene=models/duck,draw_ms,16,8,0.5,yes,no,yes\n"));
+    EXPECT_THAT(html, HasSubstr(base64(csv))) << "of one document the same";
+
+    run.experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
+    judge(run, records());
+    writeReport(folder.path() / "report.html", {&run, 1});
+    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr("How near")));
+    writeNearness(folder.path(), run.experiments, run.tables);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "nearness.csv"));
+}
+
+/// The steps of a frame stand behind what they come to.
+TEST_F(Report, OfAnOwnSweepTheStepsAreFolded) {
+    const auto file =
+        folder.write("s.yaml", "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: {size: [1, 2]}\n");
+    ReportRun run = runIn(folder.path());
+    run.experiments = {config::loadExperiment(file, {}, folder.path())};
+    tables::RecordMaker maker;
+    for (const int size : {1, 2}) {
+        maker.beginCase("", fmt::format("{{\"size\": {}}}", size)).lane("timing");
+        maker.add("gpu_time_ms", {0.25 * size}, "draw").add("wall_time_ms", {0.5 * size});
+        maker.add("error", {1.0 * size}, "", "1");
+    }
+    tables::Recorded recorded = maker.records();
+    for (records::Record& record : recorded) record.table = "sweep/s";
+    for (config::Case& item : recorded.cases) item.experiment = "sweep/s";
+    judge(run, recorded);
+    writeReport(folder.path() / "report.html", {&run, 1});
+    const std::string html = readFile(folder.path() / "report.html");
+    const std::size_t folded =
+        html.find("<details class=\"steps\"><summary>Times of 1 step of a frame");
+    ASSERT_NE(folded, html.npos);
+    EXPECT_LT(html.find("title=\"error\">"), folded);
+    EXPECT_LT(html.find("title=\"frame_ms\">"), folded);
+    EXPECT_GT(html.find("title=\"draw_ms\">"), folded);
+    EXPECT_EQ(html.find("title=\"draw_ms\">"), html.rfind("title=\"draw_ms\">"));
 }
 
 /// What a chapter holds and what it does not, in words, with the pictures that show it.
@@ -519,7 +616,7 @@ TEST_F(Report, FirstScreenSaysWhatReproduced) {
              "<span class=\"fails\"",
              "could be judged here",
              "Of those that hold, 1 rests on a value of ours that the document leaves open. ",
-             "Not reproduced: “no” (<a href=\"#zju2005-9.9\">",
+             "</span> <a href=\"#zju2005-9.9\">Table 9.9</a> A table: “no”</li>",
              "<span>Later</span>",
              "<span>Earlier</span>",
              "<div class=\"highlights\">",
@@ -527,7 +624,8 @@ TEST_F(Report, FirstScreenSaysWhatReproduced) {
              "<h2>Every claim, in words</h2>",
              "<h3>Later</h3>",
              "<span class=\"says\">no</span> <span class=\"soft code\"><a "
-             "href=\"#zju2005-9.9\">B</a>, document, algorithmic</span>\n<p><span "
+             "href=\"#zju2005-9.9:B\">B</a>, of the document; a time that counts of work "
+             "decide</span>\n<p><span "
              "class=\"soft\">why: </span>",
              "the time is of another machine (",
              "<h3>Earlier</h3>",
@@ -565,10 +663,10 @@ TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
     run.tables[0].rows[0].cells[1].isWithinNoise = true;
     writeReport(folder.path() / "report.html", {&run, 1});
     const std::string html = readFile(folder.path() / "report.html");
-    EXPECT_THAT(
-        html, HasSubstr("<p class=\"small\"><span class=\"soft\"></span>A is faster than B.</p>"));
-    EXPECT_THAT(html,
-                HasSubstr("<p class=\"small soft\"><span class=\"soft\"></span>C and B cannot be"));
+    EXPECT_THAT(html, HasSubstr("<p class=\"told\">A is faster than B.</p>"));
+    EXPECT_LT(html.find("A is faster than B."), html.find("<table class=\"results\">"));
+    EXPECT_THAT(html, HasSubstr("<summary>Remarks: 1</summary>\n<p><span class=\"soft\"></span>C "
+                                "and B cannot be"));
     EXPECT_THAT(html, testing::ContainsRegex("<td class=\"num soft\"[^>]*>8.0"));
     EXPECT_THAT(html, HasSubstr("a grey ratio is within the noise"));
 }
