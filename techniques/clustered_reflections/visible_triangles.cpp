@@ -8,6 +8,8 @@
 #include <map>
 #include <span>
 
+#include "techniques/kit/draws.h"
+
 namespace gfxrepro::clustered_reflections {
 
 namespace {
@@ -104,15 +106,18 @@ void addChunks(const ObjectGeometry& geometry, std::span<const glm::uvec3> trian
     }
     meshopt_spatialSortTriangles(sorted.data(), indices.data(), indices.size(),
                                  &geometry.positions[first].x, last - first + 1, sizeof(glm::vec3));
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        const glm::uvec3 corners = wound(
-            geometry, glm::uvec3(sorted[3 * t], sorted[3 * t + 1], sorted[3 * t + 2]) + first);
-        if (t % kChunkTriangles == 0) {
-            const std::size_t count = std::min<std::size_t>(kChunkTriangles, triangles.size() - t);
-            levels.chunks.push_back({static_cast<std::uint32_t>(levels.triangles.size()),
-                                     static_cast<std::uint32_t>(count), object, 0});
+    for (std::size_t t = 0; t < triangles.size(); t += kChunkTriangles) {
+        const std::size_t end = std::min<std::size_t>(t + kChunkTriangles, triangles.size());
+        scene::Box box;
+        const auto firstTriangle = static_cast<std::uint32_t>(levels.triangles.size());
+        for (std::size_t i = 3 * t; i < 3 * end; i += 3) {
+            const glm::uvec3 corners =
+                wound(geometry, glm::uvec3(sorted[i], sorted[i + 1], sorted[i + 2]) + first);
+            for (int corner = 0; corner < 3; ++corner) box.add(geometry.positions[corners[corner]]);
+            levels.triangles.emplace_back(corners, object);
         }
-        levels.triangles.emplace_back(corners, object);
+        levels.chunks.push_back({glm::vec4(box.centre(), 1.0F), glm::vec4(0.5F * box.size(), 0.0F),
+                                 firstTriangle, static_cast<std::uint32_t>(end - t), object, 0});
     }
 }
 
@@ -179,7 +184,7 @@ DetailLevels detailLevels(const reflections::ReflectiveScene& scene, bool isSimp
     const ObjectGeometry& geometry = scene.geometry();
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
         const reflections::Object& object = scene.objects()[i];
-        levels.firstChunkOfObject.push_back(static_cast<std::uint32_t>(levels.chunks.size()));
+        levels.firstTriangleOfObject.push_back(static_cast<std::uint32_t>(levels.triangles.size()));
         const std::span<const glm::uvec3> all(&geometry.triangles[object.firstTriangle],
                                               object.triangleCount);
         if (all.size() <= kPartTriangles) {
@@ -196,7 +201,7 @@ DetailLevels detailLevels(const reflections::ReflectiveScene& scene, bool isSimp
             addPart(scene, std::span(sorted).subspan(at, count), i, isSimplified, false, levels);
         }
     }
-    levels.firstChunkOfObject.push_back(static_cast<std::uint32_t>(levels.chunks.size()));
+    levels.firstTriangleOfObject.push_back(static_cast<std::uint32_t>(levels.triangles.size()));
     return levels;
 }
 
@@ -240,7 +245,6 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
       parts_(gl::Buffer::of(levels_.parts)),
       levelRecords_(gl::Buffer::of(levels_.levels)),
       chunks_(gl::Buffer::of(levels_.chunks)),
-      chunkBoxes_(levels_.chunks.size() * 2 * sizeof(glm::vec4)),
       triangles_(gl::Buffer::of(levels_.triangles)),
       cornersWorld_(levels_.triangles.size() * 3 * sizeof(glm::vec3)),
       commands_(draws_ * sizeof(DrawCommand)),
@@ -251,7 +255,7 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
         return gl::Pass(shaders, {name}, visibleDefines(draws_));
     };
     place_ = compute("clustered_reflections/place_images.comp.glsl");
-    placeChunks_ = compute("clustered_reflections/place_chunks.comp.glsl");
+    placeCorners_ = compute("clustered_reflections/place_corners.comp.glsl");
     list_ = compute("clustered_reflections/list_visible.comp.glsl");
     split_ = compute("clustered_reflections/split_visible.comp.glsl");
     draw_ = gl::Pass(shaders,
@@ -259,29 +263,26 @@ VisiblePainter::VisiblePainter(const gl::ShaderLibrary& shaders,
                       "clustered_reflections/visible_triangle.frag.glsl"},
                      visibleDefines(draws_));
     vertexArray_.setAttribute(0, visibleCorners_, 3);
-    placeChunks(objects);
+    placeCorners(objects);
 }
 
-/// Corners and boxes in the world; once all are there, of the objects that move. What a frame does
-/// must not depend on the one before, or times of its repeats would tell of different work.
-void VisiblePainter::placeChunks(const reflections::GpuObjects& objects) {
+/// Corners in the world; once all are there, of the objects that move. What a frame does must not
+/// depend on the one before, or times of its repeats would tell of different work.
+void VisiblePainter::placeCorners(const reflections::GpuObjects& objects) {
     const bool isFirst = hasMoved_.empty();
     hasMoved_.resize(objects.objectCount(), 0);
-    placeChunks_.use(gl::Resources{
-        {"Triangles", triangles_},
-        {"Positions", objects.positions()},
-        {"Corners", cornersWorld_},
-        {"ChunkBoxes", chunkBoxes_},
-        {"Chunks",
-         chunks_}}.with(objects.resources()));
+    placeCorners_.use(gl::Resources{
+        {"Triangles", triangles_}, {"Positions", objects.positions()}, {"Corners", cornersWorld_}}
+                          .with(objects.resources()));
     for (std::uint32_t i = 0; i < objects.objectCount(); ++i) {
         if (objects.poses()[i] != restPoses_[i]) hasMoved_[i] = 1;
         if (!isFirst && hasMoved_[i] == 0) continue;
-        const std::uint32_t first = levels_.firstChunkOfObject[i];
-        const std::uint32_t count = levels_.firstChunkOfObject[i + 1] - first;
+        const std::uint32_t first = levels_.firstTriangleOfObject[i];
+        const std::uint32_t count = levels_.firstTriangleOfObject[i + 1] - first;
         if (count == 0) continue;
-        placeChunks_.set("firstChunk", first);
-        glDispatchCompute(count, 1, 1);
+        placeCorners_.set("firstTriangle", first);
+        placeCorners_.set("triangleCount", count);
+        glDispatchCompute(kit::groupsFor(count, kChunkTriangles), 1, 1);
     }
 }
 
@@ -296,7 +297,7 @@ gl::Resources VisiblePainter::resources(const reflections::GpuObjects& objects,
 
 void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buffer& cameras,
                           const Clusters& clusters, ClusterImages& target) {
-    placeChunks(objects);
+    placeCorners(objects);
     const glm::ivec2 atlasSizePx = target.sizePx();
     const gl::Resources inPlaces{{"Cameras", cameras},
                                  {"Counts", clusters.counts},
@@ -315,7 +316,6 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
                            gl::Resources{{"Parts", parts_},
                                          {"Levels", levelRecords_},
                                          {"Chunks", chunks_},
-                                         {"ChunkBoxes", chunkBoxes_},
                                          {"Corners", cornersWorld_},
                                          {"Visible", visible_},
                                          {"VisibleCorners", visibleCorners_}}
@@ -342,8 +342,8 @@ void VisiblePainter::draw(const reflections::GpuObjects& objects, const gl::Buff
 std::size_t VisiblePainter::sizeBytes() const {
     std::size_t sum = 0;
     for (const gl::Buffer* buffer :
-         {&places_, &order_, &families_, &parts_, &levelRecords_, &chunks_, &chunkBoxes_,
-          &triangles_, &cornersWorld_, &commands_, &visible_, &visibleCorners_}) {
+         {&places_, &order_, &families_, &parts_, &levelRecords_, &chunks_, &triangles_,
+          &cornersWorld_, &commands_, &visible_, &visibleCorners_}) {
         sum += buffer->sizeBytes();
     }
     return sum;

@@ -25,9 +25,11 @@ struct DetailLevel {
     std::uint32_t firstChunk = 0, chunkCount = 0, padding = 0;
 };
 struct DetailChunk {
+    glm::vec4 boundsCentre{0.0F};    // in mesh space
+    glm::vec4 boundsHalfSize{0.0F};  // in mesh space
     std::uint32_t firstTriangle = 0, triangleCount = 0, object = 0, padding = 0;
 };
-static_assert(sizeof(DetailPart) == 48 && sizeof(DetailLevel) == 16 && sizeof(DetailChunk) == 16);
+static_assert(sizeof(DetailPart) == 48 && sizeof(DetailLevel) == 16 && sizeof(DetailChunk) == 48);
 
 struct DetailLevels {
     std::vector<DetailPart> parts;
@@ -35,7 +37,7 @@ struct DetailLevels {
     std::vector<DetailChunk> chunks;  // those of an object follow each other
     std::vector<glm::uvec4>
         triangles;  // corners as they are lit, vertices of the ObjectGeometry; w: object
-    std::vector<std::uint32_t> firstChunkOfObject;  // and, last, how many chunks there are
+    std::vector<std::uint32_t> firstTriangleOfObject;  // and, last, how many triangles there are
 };
 
 /// Chunks of all objects, triangles in an order of places. With `isSimplified` parts have coarser
@@ -84,16 +86,16 @@ class VisiblePainter {
     AtlasState state() const { return order_.read<AtlasState>(1).front(); }
 
   private:
-    void placeChunks(const reflections::GpuObjects& objects);
+    void placeCorners(const reflections::GpuObjects& objects);
 
     CameraSettings settings_;
     float levelErrorPx_;
     std::uint32_t draws_;  // of what is listed
     DetailLevels levels_;
-    gl::Pass place_, placeChunks_, list_, split_, draw_;
+    gl::Pass place_, placeCorners_, list_, split_, draw_;
     gl::Buffer order_;  // AtlasState, then the clusters in the order in which they are placed
     gl::Buffer places_, families_;
-    gl::Buffer parts_, levelRecords_, chunks_, chunkBoxes_;
+    gl::Buffer parts_, levelRecords_, chunks_;
     gl::Buffer triangles_, cornersWorld_;  // by triangle of all levels
     gl::Buffer commands_, visible_, visibleCorners_;
     gl::VertexArray vertexArray_;

@@ -10,6 +10,8 @@ struct DetailLevel {
     uint firstChunk, chunkCount, padding;
 };
 struct DetailChunk {
+    vec4 boundsCentre;    // in mesh space
+    vec4 boundsHalfSize;  // in mesh space
     uint firstTriangle, triangleCount, object, padding;
 };
 

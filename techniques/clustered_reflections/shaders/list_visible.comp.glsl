@@ -13,7 +13,6 @@ layout(local_size_x = GROUP_SIZE) in;
 
 layout(std430) readonly buffer Parts { DetailPart parts[]; };
 layout(std430) readonly buffer Levels { DetailLevel levels[]; };
-layout(std430) readonly buffer ChunkBoxes { vec4 chunkBoxes[]; };  // centre, half size
 #include "clustered_reflections/triangle_corners.glsl"
 layout(std430) writeonly buffer Visible { uvec2 visible[]; };  // triangle | own << 31, cluster
 layout(std430) writeonly buffer VisibleCorners {
@@ -52,6 +51,12 @@ uint countBefore(bool value, out uint total) {
         total += ofMarks;
     }
     return before;
+}
+
+void toWorld(mat4 worldFromMesh, inout vec3 centre, inout vec3 halfSize) {
+    mat3 axes = mat3(worldFromMesh);
+    centre = (worldFromMesh * vec4(centre, 1.0)).xyz;
+    halfSize = mat3(abs(axes[0]), abs(axes[1]), abs(axes[2])) * halfSize;
 }
 
 // The part's coarsest level whose error is small in texels, where the part is nearest.
@@ -172,9 +177,8 @@ void main() {
             DetailPart part = parts[firstPart + self];
             mat4 worldFromMesh = objects[part.object].worldFromMesh;
             mat3 axes = mat3(worldFromMesh);
-            vec3 centre = (worldFromMesh * part.boundsCentre).xyz;
-            mat3 reach = mat3(abs(axes[0]), abs(axes[1]), abs(axes[2]));
-            vec3 halfSize = reach * part.boundsHalfSize.xyz;
+            vec3 centre = part.boundsCentre.xyz, halfSize = part.boundsHalfSize.xyz;
+            toWorld(worldFromMesh, centre, halfSize);
             uint ofPart = objects[part.object].surface & 0xFFFFu;
             bool isOwn = ofPart == reflector;
             if (isOwn) own = kOwnTriangle | (determinant(axes) < 0.0 ? kMirrored : 0u);
@@ -201,8 +205,10 @@ void main() {
                     if (starts[k + step] <= slot) k += step;
                 }
                 chunk = firsts[k] + slot - starts[k];
-                isSeen =
-                    isInFrustum(rows, chunkBoxes[2u * chunk].xyz, chunkBoxes[2u * chunk + 1u].xyz);
+                vec3 centre = chunks[chunk].boundsCentre.xyz;
+                vec3 halfSize = chunks[chunk].boundsHalfSize.xyz;
+                toWorld(objects[chunks[chunk].object].worldFromMesh, centre, halfSize);
+                isSeen = isInFrustum(rows, centre, halfSize);
                 chunk |= ownParts[k];
             }
             uint seenTotal;

@@ -1,4 +1,4 @@
-// Triangles of all levels of detail in the world, as place_chunks.comp.glsl puts them there.
+// Triangles of all levels of detail in the world, as place_corners.comp.glsl puts them there.
 
 layout(std430) readonly buffer Corners { float corners[]; };  // nine a triangle
 

@@ -87,9 +87,10 @@ TEST(DetailLevelsTest, TheFinestLevelsHoldEveryTriangleOnce) {
         std::sort(expected.begin(), expected.end());
         std::sort(found.begin(), found.end());
         EXPECT_EQ(found, expected);
-        ASSERT_EQ(levels.firstChunkOfObject.size(), scene.objects().size() + 1);
-        EXPECT_EQ(levels.firstChunkOfObject.back(), levels.chunks.size());
-        EXPECT_EQ(levels.firstChunkOfObject[2], levels.firstChunkOfObject[3]);  // without triangles
+        ASSERT_EQ(levels.firstTriangleOfObject.size(), scene.objects().size() + 1);
+        EXPECT_EQ(levels.firstTriangleOfObject.back(), levels.triangles.size());
+        EXPECT_EQ(levels.firstTriangleOfObject[2],
+                  levels.firstTriangleOfObject[3]);  // without triangles
     }
 }
 
