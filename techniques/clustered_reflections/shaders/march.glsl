@@ -22,6 +22,7 @@ struct MarchHit {
     float fraction;   // u of positionPx
     float along;      // where on the way from begin to end, 0 … 1, it meets the surface
     int steps;        // that were looked at, of a miss too
+    vec2 beforePx;    // a step before positionPx: the ray is not behind what is there
 };
 
 // The includer reads its image. storedAt: nearM / z of a texel. isOwnAt: whether the texel shows
@@ -107,14 +108,15 @@ MarchHit hitAt(MarchImage image, ProjectedRay ray, int step, int steps) {
     float before = max(u - perStep, 0.0);
     vec2 positionPx = ray.beginPx + u * ray.deltaPx;
     // Between this sample and the one before the ray meets the surface, both taken as straight.
+    vec2 beforePx = ray.beginPx + before * ray.deltaPx;
     float behind = storedBetween(image, positionPx) - (ray.k1 + ray.k2 * u);
-    float inFront = ray.k1 + ray.k2 * before -
-                    storedBetween(image, ray.beginPx + before * ray.deltaPx);
+    float inFront = ray.k1 + ray.k2 * before - storedBetween(image, beforePx);
     float met = behind > 0.0 && inFront >= 0.0 ? mix(before, u, inFront / (inFront + behind)) : u;
     // From the image back to the ray, perspective undone.
     float kEnd = ray.k1 + ray.k2;
     float along = met * kEnd / ((1.0 - met) * ray.k1 + met * kEnd);
-    return MarchHit(positionPx, ray.beginPx + met * ray.deltaPx, u, mix(ray.kept.x, ray.kept.y, along), steps);
+    return MarchHit(positionPx, ray.beginPx + met * ray.deltaPx, u,
+                    mix(ray.kept.x, ray.kept.y, along), steps, beforePx);
 }
 
 #if MARCH == 0

@@ -95,6 +95,30 @@ TEST_F(ClusteredTracerTest, APlanarMirrorShowsTheMirroredScene) {
     }
 }
 
+// Rays meet triangles, not texels: a bar is as wide in images a quarter as fine, where a texel in
+// the middle of which it is not seen shows what lies behind it.
+TEST_F(ClusteredTracerTest, OutlinesAreSharperThanImagesOfTriangles) {
+    scene::Scene source = rooms::room(false);
+    for (const float x : {-0.9F, -0.2F, 0.5F}) {
+        rooms::add(source, shapes::cube({x, -1.4F, 0.5F}, {x + 0.4F, 1.4F, 0.55F}),
+                   {1.0F, 0.0F, 1.0F});
+    }
+    constexpr int kSizePx = 160;
+    const reflections::HostGBuffer expected = seenBehind(source, kSizePx);
+    rooms::add(source, mirrorWall(), glm::vec3(0.9F), Surface::Mirror);
+    const Traced traced =
+        trace(ReflectiveScene(source), frontCamera(),
+              {.camera = {.depthImageScale = 0.25F}, .drawing = ImageDrawing::Visible}, kSizePx);
+    int bars = 0, wrong = 0;
+    traced.forEachReflective([&](glm::ivec2, std::size_t i) {
+        const bool isBar = isMagenta(expected.diffuse[i], 0.05F);
+        bars += isBar;
+        wrong += isBar != isMagenta(traced.radiance[i], 0.05F);
+    });
+    EXPECT_GT(bars, 500);
+    EXPECT_LT(wrong, bars / 15);
+}
+
 // A hundredth of the light: steps of linear colours in 10 bits are three levels there.
 TEST_F(ClusteredTracerTest, APlanarMirrorShowsDarkColours) {
     scene::Scene dark = rooms::room(false);

@@ -149,7 +149,7 @@ void main() {
     MarchHit hit;
     MarchImage image = MarchImage(clipFromWorld, originPx, sizePx, nearM);
     bool isHit = march(image, rays[2 * ray].xyz, rays[2 * ray + 1].xyz, hit);
-    if (!isHit) hit = MarchHit(vec2(0.0), vec2(0.0), 0.0, 0.0, 0);
+    if (!isHit) hit = MarchHit(vec2(0.0), vec2(0.0), 0.0, 0.0, 0, vec2(0.0));
     hits[ray] = vec4(float(isHit), hit.fraction, hit.along, float(hit.steps));
     places[ray] = hit.positionPx;
 }
