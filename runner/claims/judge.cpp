@@ -395,8 +395,8 @@ std::string whyNoInterval(const Group& group) {
             whatIsNeeded());
     }
     return fmt::format(
-        "{} of random numbers; an interval needs {}: `measure: {{seeds: process, "
-        "processes: {}}}`, or as many values of 'seed' in a sweep or an import",
+        "{} of random numbers; an interval needs {}: `measure: {{processes: {}}}` where the seed "
+        "is not swept, or as many values of 'seed' in a sweep or an import",
         *fewest == 1 ? "one sample" : fmt::format("{} seeds", *fewest), metrics::kFewestForInterval,
         metrics::kFewestForInterval);
 }

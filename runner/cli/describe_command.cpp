@@ -84,8 +84,7 @@ void printOutputs(const config::Outputs& outputs) {
     fmt::print("\nmetrics\n");
     printMetrics(outputs.metrics);
     if (outputs.areRandom) {
-        fmt::print(
-            "  of random numbers: `measure: {{seeds: process}}` draws others in each process\n");
+        fmt::print("  of random numbers: each process draws others (`measure: {{processes: 6}}`)\n");
     }
     fmt::print("\npasses: what times are of, and what tells values of a metric apart\n");
     for (const config::PassInfo& info : outputs.passes) {

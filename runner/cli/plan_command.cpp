@@ -12,7 +12,7 @@ namespace {
 
 long long iterationsOf(const config::Measure& measure) {
     return static_cast<long long>(measure.processes) *
-           (measure.warmup + static_cast<long long>(measure.repeats) * measure.frames);
+           (measure.warmup() + static_cast<long long>(measure.repeats) * measure.frames);
 }
 
 /// Time of all processes of a case, its memory, and how they are known. `first` is its first twin.

@@ -26,7 +26,7 @@ constexpr std::string_view kFarMark = ", far";
 constexpr std::string_view kFileHeader = "title,time_s,memory_bytes,source";
 
 double iterationsOf(const config::Measure& measure) {
-    return measure.warmup + static_cast<double>(measure.repeats) * measure.frames;
+    return measure.warmup() + static_cast<double>(measure.repeats) * measure.frames;
 }
 
 /// What `past` took, for the iterations and frames that `measure` asks for.

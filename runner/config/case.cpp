@@ -1,5 +1,7 @@
 #include "runner/config/case.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <type_traits>
@@ -119,8 +121,8 @@ Node Case::sceneParams() const {
 }
 
 bool Measure::mayContinue() const {
-    return relativeError > 0.0 && lane == Lane::Timing && processes >= kFewestRounds &&
-           processes < kMostRounds;
+    return lane == Lane::Timing && !isWithinBudget && timeBudgetS > 0.0 &&
+           processes >= kFewestRounds && processes < kMostRounds;
 }
 
 bool Measure::mayFollow(int rounds, double roundS) const {
@@ -137,9 +139,6 @@ namespace {
 
 using namespace types;
 
-struct OutputKeys {
-    GivenKey width, height;
-};
 const KeyTable<OutputKeys>& outputTable() {
     const auto side = [](const char* name, const char* doc) {
         return numberKey(name, kOutputSizesPx, std::to_string(kDefaultOutputPx), doc, "pixels");
@@ -147,7 +146,9 @@ const KeyTable<OutputKeys>& outputTable() {
     static const KeyTable<OutputKeys> table{
         {"output", "output.", ""},
         {{&OutputKeys::width, side("width", "width of the image")},
-         {&OutputKeys::height, side("height", "height of the image")}}};
+         {&OutputKeys::height, side("height", "height of the image")},
+         {&OutputKeys::frames,
+          numberKey("frames", kFrameCounts, "1", "frames of a path; each is measured")}}};
     return table;
 }
 
@@ -160,12 +161,13 @@ void take(const GivenKey& key, auto& value) {
 
 }  // namespace
 
-std::pair<int, int> readOutput(const Node& map) {
+std::tuple<int, int, int> readOutput(const Node& map) {
     const OutputKeys given = outputTable().readKnown(map, "output");
-    const auto side = [](const GivenKey& key) {
-        return key ? static_cast<int>(key.number("output")) : kDefaultOutputPx;
+    const auto number = [](const GivenKey& key, int absent) {
+        return key ? static_cast<int>(key.number("output")) : absent;
     };
-    return {side(given.width), side(given.height)};
+    return {number(given.width, kDefaultOutputPx), number(given.height, kDefaultOutputPx),
+            number(given.frames, 1)};
 }
 
 const KeyTable<MeasureKeys>& measureTable() {
@@ -174,43 +176,29 @@ const KeyTable<MeasureKeys>& measureTable() {
                         const char* unit = "") {
         return numberKey(name, range, Node::number(value).text(), doc, unit);
     };
-    constexpr NumberRange kAny{.least = 0, .most = kMost, .isWhole = true};
     constexpr NumberRange kSome{.least = 1, .most = kMost, .isWhole = true};
     constexpr Measure kUsual{};
     static const KeyTable<M> table{
         {"measure", "measure.", ""},
         {{&M::lane, choiceKey("lane", std::array{"quality", "timing"}, "quality",
-                              "how cases run (quality: may run beside others; timing: runs "
-                              "alone)")},
-         {&M::relativeError,
-          key(kRelativeError, {.least = 0, .most = 1}, kUsual.relativeError,
-              "rounds go on until half of each 95 % interval ÷ time is no more, and then to 14, 16 "
-              "or 19, or to 20; with 6 to 19 processes in the timing lane; 0: they do not")},
-         {&M::warmup,
-          key("warmup", kAny, kUsual.warmup, "iterations before the first measured one")},
-         {&M::repeats, key("repeats", kSome, kUsual.repeats, "measured iterations in one process")},
+                              "how cases run (quality: side by side; timing: each alone, and "
+                              "each frame is drawn once before it is timed)")},
+         {&M::repeats,
+          key("repeats", kSome, kUsual.repeats, "how often a process measures each frame")},
          {&M::processes,
           key("processes", kSome, kUsual.processes,
-              "rounds: in each every case is run, in a process of its own; of times six, or as "
-              "many as fit into the budget, where it is not given")},
+              "rounds, in each of which every case has a process of its own; where it is not "
+              "given, of times six, or as many as fit into the budget")},
          {&M::timeBudgetS,
-          key(kTimeBudget, {.least = 0, .most = 1e9}, kUsual.timeBudgetS,
-              "of all rounds of the file but those that 'processes' asks for: none is begun to end "
-              "later, but where half more gives six",
-              "seconds")},
-         {&M::frames,
-          key("frames", kFrameCounts, kUsual.frames, "frames of a path; each is repeated")},
-         {&M::seeds,
-          choiceKey("seeds", std::array{"case", "process"}, "case",
-                    "random numbers of a technique that draws some, or of a program with {seed}; "
-                    "of the latter as 'program.seeds' says (case: the same in all processes of a "
-                    "case; process: others in each, so that errors have an interval)")},
-         {&M::sceneSeeds,
-          key("scene_seeds", {.least = 1, .most = kMostSceneSample + 1, .isWhole = true},
-              kUsual.sceneSeeds,
-              "seeds of a generated scene, from the catalogue's on: a case each, without times")},
+          numberKey(kTimeBudget, {.least = 0, .most = 1e9}, "60 without 'processes', else 0",
+                    fmt::format("for all rounds of the file that are timed, and half more where "
+                                "that gives six; beside {} to {} 'processes', which are all "
+                                "measured, for further ones until each time is known to {:g} %, "
+                                "{} in all at most",
+                                kFewestRounds, kMostRounds - 1, 100.0 * kKnownTo, kMostRounds),
+                    "seconds")},
          {&M::timeLimitS, key("time_limit_s", {.least = 1e-3, .most = 1e9}, kUsual.timeLimitS,
-                              "of the whole case, scene loading included", "seconds")}}};
+                              "for a case, the loading of its scene included", "seconds")}}};
     return table;
 }
 
@@ -220,32 +208,24 @@ MeasureKeys measureOf(const Node& document) {
     return measureTable().find(measure ? *measure : kNone);
 }
 
+OutputKeys outputOf(const Node& document) {
+    static const Node kNone;
+    const GivenKey output = contentOf(document).output;
+    return outputTable().find(output ? *output : kNone);
+}
+
 Measure readMeasure(const Node& map, Measure measure) {
     const MeasureKeys given = measureTable().readKnown(map, "measure");
-    take(given.relativeError, measure.relativeError);
-    // Who asks how well a time is known wants times.
-    if (measure.relativeError > 0.0) measure.lane = Measure::Lane::Timing;
     if (given.lane) measure.lane = Measure::Lane(given.lane.choice("measure"));
     // Times are wanted with an interval, in about a minute.
     if (measure.lane == Measure::Lane::Timing) {
-        measure.warmup = 1;
         measure.processes = kFewestRounds;
         measure.isWithinBudget = !given.processes;
+        if (measure.isWithinBudget) measure.timeBudgetS = kUsualTimeBudgetS;
     }
-    take(given.warmup, measure.warmup);
     take(given.repeats, measure.repeats);
     take(given.processes, measure.processes);
     take(given.timeBudgetS, measure.timeBudgetS);
-    take(given.frames, measure.frames);
-    if (given.seeds) {
-        const bool isByCase = given.seeds.choice("measure") == 0;
-        measure.seeds = isByCase ? Measure::Seeds::Case : Measure::Seeds::Process;
-    }
-    take(given.sceneSeeds, measure.sceneSeeds);
-    if (measure.sceneSeeds > 1 && measure.lane == Measure::Lane::Timing) {
-        throw Error(given.sceneSeeds->location(),
-                    "'scene_seeds' takes no times; allowed: 1, or with lane: quality");
-    }
     take(given.timeLimitS, measure.timeLimitS);
     return measure;
 }

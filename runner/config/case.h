@@ -16,6 +16,10 @@ namespace gfxrepro::config {
 inline constexpr int kFewestRounds = 6;
 /// Where rounds go on until times are known, of which some never are.
 inline constexpr int kMostRounds = 20;
+/// They are known where half of each case's 95 % interval ÷ the time of its frames is no more.
+inline constexpr double kKnownTo = 0.05;
+/// Of who does not say how many processes there are.
+inline constexpr double kUsualTimeBudgetS = 60.0;
 
 // What a case may have, in its config, swept, printed or varied by an assumption.
 inline constexpr NumberRange kOutputSizesPx{.least = 1, .most = 16384, .isWhole = true};
@@ -26,26 +30,25 @@ inline constexpr int kDefaultOutputPx = 512;
 struct Measure {
     enum class Lane { Quality, Timing };
     Lane lane = Lane::Quality;
-    int warmup = 0;     // iterations before the first measured one
     int repeats = 1;    // measured iterations in one process
     int processes = 1;  // rounds, in each of which a case is run in a process of its own if more
-                        // than 1; the fewest, where more may follow:
-    /// Timing lane, from metrics::kFewestForInterval processes on: rounds go on until half of each
-    /// case's 95 % interval ÷ the time of its frames is no more than this. 0: they do not.
-    double relativeError = 0.0;
-    double timeBudgetS = 60.0;  // of all rounds of the experiment
-    int frames = 1;             // frames of a path; each is repeated
-    int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
+                        // than 1; the fewest, where more may follow
     /// Timing lane: of `processes` the first alone is measured whatever it takes; the others are
     /// begun only where they end within `timeBudgetS`.
     bool isWithinBudget = false;
+    double timeBudgetS = 0.0;   // of all rounds of the experiment
+    int frames = 1;             // frames of a path; each is repeated
+    int sceneSeeds = 1;         // samples of a generated scene: its seed and those that follow it
     double timeLimitS = 120.0;  // of the whole case, scene loading included
     /// The random numbers of a case: there are none; the same in all of its processes; or others in
-    /// each. Of a case that is not in a plan yet Case may mean None.
+    /// each. Of a technique a plan tells.
     enum class Seeds { None, Case, Process };
     Seeds seeds = Seeds::None;
 
-    /// Whether rounds may follow the first `processes`.
+    /// Iterations before the first measured one.
+    int warmup() const { return lane == Lane::Timing ? 1 : 0; }
+    /// Whether rounds may follow the first `processes`: in the timing lane, from kFewestRounds
+    /// processes on, within `timeBudgetS`, until times are known to kKnownTo.
     bool mayContinue() const;
     /// At most.
     int mostRounds() const { return mayContinue() ? kMostRounds : processes; }
@@ -56,8 +59,7 @@ struct Measure {
     bool mayFollow(int rounds, double roundS) const;
 };
 
-/// What ends rounds, and the keys of `measure` that say so.
-inline constexpr const char* kRelativeError = "relative_error";
+/// The key of `measure` that ends rounds.
 inline constexpr const char* kTimeBudget = "time_budget_s";
 
 /// What the seed grows by from one process of a case to the next, with Seeds::Process.
@@ -70,7 +72,7 @@ inline constexpr std::string_view kSceneAxisPrefix = "scene.";
 /// the seeds of a generated scene it has, from 0.
 inline constexpr const char* kStandsFor = "stands_for";
 inline constexpr const char* kSceneSample = "scene_sample";
-inline constexpr int kMostSceneSample = 999;  // of `measure.scene_seeds`
+inline constexpr int kMostSceneSample = 999;  // of `scene_seeds`
 
 /// One case. Of a plan it is complete: a worker needs nothing else.
 struct Case {

@@ -59,6 +59,10 @@ const KeyTable<ContentKeys>& contentTable() {
           "what a technique measures that takes one: `gfxrepro list techniques`", refTo("program")},
          {&C::scene, "scene", "reference", "none", "a catalogued name, or a file beside this one",
           text()},
+         {&C::sceneSeeds,
+          numberKey("scene_seeds", {.least = 1, .most = kMostSceneSample + 1, .isWhole = true}, "1",
+                    "seeds of a generated scene, from the catalogue's on: a case each, without "
+                    "times")},
          {&C::sceneParams, "scene_params", "{name: value}", "{}",
           "of the generated scenes, laid over the catalogue's: `gfxrepro describe GENERATOR`; of a "
           "height map beside this file: " +
@@ -76,13 +80,13 @@ const KeyTable<ContentKeys>& contentTable() {
           "takes the place of a parameter's value or default in the cases that take it",
           mapOf(anything())},
          {&C::output, "output", "map", fmt::format("{0} × {0}", kDefaultOutputPx),
-          "size of the image", refTo("output")},
+          "size of the image, and how many", refTo("output")},
          {&C::sweep, "sweep", "{axis: values}", "{}", "axes multiply: each point is a case",
           refTo("sweep")},
          {&C::measure, "measure", "map",
-          "once, a program without {seed} twice; where times are shown, and of sweep_of without "
-          "layout: six rounds, or a minute",
-          "lane, warm-up, repeats and processes", refTo("measure")},
+          "once, a program twice, and with an unswept {seed} six times; where times are shown, and "
+          "of sweep_of without layout: six rounds, or a minute",
+          "lane, repeats and processes", refTo("measure")},
          {&C::shows, "shows", "[name]", "those with a truth",
           "pictures that the document shows, by the names that the technique gives them (`classes` "
           "is also classes_0, …): the report folds the others",
@@ -106,7 +110,7 @@ const KeyTable<ContentKeys>& contentTable() {
           mapOf(refTo("fit"))},
          {&C::assumptions, "assumptions", "{NAME: assumption}", "{}",
           "what the paper left open: a parameter, `output`, `scene`, `scene_seed`, "
-          "`measure.frames`, or free text",
+          "`output.frames`, or free text",
           mapOf(refTo("assumption_part"))}}};
     return table;
 }
@@ -299,22 +303,20 @@ void requireTold(const ContentKeys& given, const Experiment& experiment) {
         return experiment.sweep.isMap() && experiment.sweep.find(axis);
     };
     const bool hasScene = !experiment.scene.isNull() || isSwept("scene");
-    const bool hasSize = given.output || isSwept("output.width") || isSwept("output.height");
+    const OutputKeys output = outputOf(experiment.document);
+    const bool hasSize =
+        output.width || output.height || isSwept("output.width") || isSwept("output.height");
     require(given.scene, hasScene, "{scene}", program.uses(placeholder::kScene));
     require(given.output, hasSize, "{width} or {height}",
             program.uses(placeholder::kWidth) || program.uses(placeholder::kHeight));
     const char* told = program.givesAllFrames ? placeholder::kFrames : placeholder::kFrame;
-    require(given.measure, experiment.measure.frames > 1,
+    require(given.output, experiment.measure.frames > 1,
             fmt::format("{{{}}}, of which there are several", told), program.uses(told));
-    const bool isSeeded = experiment.measure.seeds != Measure::Seeds::None;
-    require(given.measure, isSeeded && measureOf(experiment.document).seeds,
-            "{seed}, of which 'seeds' tells", program.uses(placeholder::kSeed));
 }
 
-/// Of a built-in technique, what it would be if that draws random numbers.
-Measure::Seeds defaultSeeds(const Experiment& experiment) {
-    if (experiment.technique == kImported) return Measure::Seeds::None;
-    if (programOf(experiment).isNull()) return Measure::Seeds::Case;
+/// Of a program: each process draws others, but where the seed is swept or a truth may share it.
+Measure::Seeds seedsOf(const Experiment& experiment) {
+    if (programOf(experiment).isNull()) return Measure::Seeds::None;
     const ExternalProgram program = readProgram(programOf(experiment));
     if (program.framesAreSeeds) return Measure::Seeds::Case;
     if (!program.uses(placeholder::kSeed)) return Measure::Seeds::None;
@@ -322,8 +324,7 @@ Measure::Seeds defaultSeeds(const Experiment& experiment) {
         return std::ranges::any_of(point,
                                    [](const auto& one) { return one.key() == placeholder::kSeed; });
     });
-    const bool isByCase = isSwept && !programTable().find(programOf(experiment)).seeds;
-    return program.seedsByProcess && !isByCase ? Measure::Seeds::Process : Measure::Seeds::Case;
+    return isSwept || program.sharesSeeds ? Measure::Seeds::Case : Measure::Seeds::Process;
 }
 
 /// Of a program it is known which pictures there are.
@@ -351,8 +352,12 @@ void readMeasurement(const Node& document, const ContentKeys& given, Experiment&
     experiment.sceneParams = mapIn(given.sceneParams, document);
     experiment.sceneInstead = mapIn(given.sceneInstead, document);
     experiment.sweep = valueOf(given.sweep);
-    std::tie(experiment.outputWidthPx, experiment.outputHeightPx) =
+    std::tie(experiment.outputWidthPx, experiment.outputHeightPx, experiment.measure.frames) =
         readOutput(mapIn(given.output, document));
+    if (given.sceneSeeds) {
+        experiment.measure.sceneSeeds =
+            static_cast<int>(given.sceneSeeds.number(given.sceneSeeds.name()));
+    }
     if (!given.shows) return;
     const std::string& what = given.shows.name();
     if (!given.shows->isSequence()) {
@@ -367,21 +372,21 @@ void readMeasurement(const Node& document, const ContentKeys& given, Experiment&
 /// How it is measured, which depends on what is shown: who shows times, or anything that there is,
 /// wants times.
 void readLane(const Node& document, const ContentKeys& keys, Experiment& experiment) {
-    const Node map = mapIn(keys.measure, document);
-    const MeasureKeys given = measureTable().find(map);
     const bool isTimed = experiment.hasDefaultLayout() || showsTimes(experiment.layout);
-    Measure defaults;
+    Measure defaults = experiment.measure;
     if (isTimed) defaults.lane = Measure::Lane::Timing;
-    defaults.seeds = defaultSeeds(experiment);
-    // Who wants other seeds in each process wants several.
-    const bool isByProcess = given.seeds ? given.seeds.choice(keys.measure.name()) == 1
-                                         : defaults.seeds == Measure::Seeds::Process;
-    if (isByProcess) defaults.processes = kFewestRounds;
-    // One run of a program without a seed does not tell whether another comes to the same.
-    const bool isUnseeded =
-        !programOf(experiment).isNull() && defaults.seeds == Measure::Seeds::None;
-    if (isUnseeded) defaults.processes = 2;
-    experiment.measure = readMeasure(map, defaults);
+    defaults.seeds = seedsOf(experiment);
+    if (!programOf(experiment).isNull()) {
+        // Other seeds in each process give an interval. One run of a program without a seed does
+        // not tell whether another comes to the same.
+        if (defaults.seeds == Measure::Seeds::Process) defaults.processes = kFewestRounds;
+        if (defaults.seeds == Measure::Seeds::None) defaults.processes = 2;
+    }
+    experiment.measure = readMeasure(mapIn(keys.measure, document), defaults);
+    if (experiment.measure.sceneSeeds > 1 && experiment.measure.lane == Measure::Lane::Timing) {
+        throw Error(keys.sceneSeeds->location(),
+                    "'scene_seeds' takes no times; allowed: 1, or with lane: quality");
+    }
     requireTold(keys, experiment);
 }
 

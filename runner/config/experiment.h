@@ -22,17 +22,21 @@ namespace gfxrepro::config {
 
 /// What a config has beside its name.
 struct ContentKeys {
-    GivenKey title, technique, program, scene, sceneParams, sceneInstead, params, paramsByScene,
-        paramsInstead, output, sweep, measure, shows, labels, layout, printed, claims, plots, fit,
-        assumptions;
+    GivenKey title, technique, program, scene, sceneSeeds, sceneParams, sceneInstead, params,
+        paramsByScene, paramsInstead, output, sweep, measure, shows, labels, layout, printed,
+        claims, plots, fit, assumptions;
 };
 ContentKeys contentOf(const Node& document);
 /// What its `measure` has.
 struct MeasureKeys {
-    GivenKey lane, relativeError, warmup, repeats, processes, timeBudgetS, frames, seeds,
-        sceneSeeds, timeLimitS;
+    GivenKey lane, repeats, processes, timeBudgetS, timeLimitS;
 };
 MeasureKeys measureOf(const Node& document);
+/// What its `output` has.
+struct OutputKeys {
+    GivenKey width, height, frames;
+};
+OutputKeys outputOf(const Node& document);
 
 /// One point of a sweep: axis name → value, in the order of the axes.
 using AxisPoint = Node::Map;
@@ -113,7 +117,7 @@ struct Printed {
     std::vector<std::string> header;
     std::vector<std::vector<std::string>> rows;
     /// What the paper measured at where the profile `paper` departs from it: a parameter,
-    /// `output.width`, `output.height`, `measure.frames` or `scene`, with the printed value.
+    /// `output.width`, `output.height`, `output.frames` or `scene`, with the printed value.
     Node::Map at;
     /// Scenes of ours that could not be fitted to what is printed: they judge nothing of the paper.
     std::vector<std::string> unfit;
@@ -153,7 +157,7 @@ struct PlotSpec {
 inline constexpr const char* kOutputAssumption = "output";
 inline constexpr const char* kSceneAssumption = "scene";
 inline constexpr const char* kSceneSeedAssumption = "scene_seed";
-inline constexpr const char* kFramesAssumption = "measure.frames";
+inline constexpr const char* kFramesAssumption = "output.frames";
 
 /// Keys of an experiment that overrides set, and scenes stand in.
 inline constexpr const char* kParamsByScene = "params_by_scene";
@@ -161,7 +165,7 @@ inline constexpr const char* kParamsInstead = "params_instead";
 inline constexpr const char* kSceneInstead = "scene_instead";
 
 /// `assumptions:` — what the paper left open. One that names a parameter of the technique,
-/// `output`, `scene`, `scene_seed` or `measure.frames` is bound to it: value and unit are those of
+/// `output`, `scene`, `scene_seed` or `output.frames` is bound to it: value and unit are those of
 /// the cases.
 struct Assumption {
     std::string name;

@@ -22,7 +22,7 @@ namespace {
 using namespace types;
 using ParamType = ProgramParam::Type;
 
-constexpr std::array kFramesOfARun = {"one", "all"}, kSeedsOf = {"case", "process"};
+constexpr std::array kFramesOfARun = {"one", "all"};
 constexpr std::array kBetter = {"lower", "higher"};
 
 }  // namespace
@@ -33,8 +33,9 @@ const KeyTable<ProgramKeys>& programTable() {
         {"program", "program.",
          "Texts may have placeholders: {NAME} of a parameter, {here} (folder of this file), {out} "
          "(an empty folder, in which the program runs), {scene} (the case's scene as a .glb file), "
-         "{width}, {height}, {seed} (a parameter of every program that takes it), {frame} (from "
-         "0), {frames} (how many). No shell sees them. The program says what it measured by lines "
+         "{width}, {height}, {seed} (a parameter of every program that takes it; where it is not "
+         "swept, another in each process), {frame} (from 0), {frames} (how many). No shell sees "
+         "them. The program says what it measured by lines "
          "of JSON, {\"metric\": …, \"value\": …, \"unit\": …} with \"pass\" and \"frame\" where "
          "there are such, on the descriptor whose number is in GFXREPRO_METRICS_FD, or in the file "
          "that GFXREPRO_METRICS_FILE names."},
@@ -62,10 +63,6 @@ const KeyTable<ProgramKeys>& programTable() {
           choiceKey("frames", kFramesOfARun, "one",
                     "what a run of it gives: one frame, {frame}; or all {frames} of the case, each "
                     "line and picture with its own; the run's time is then shared out among them")},
-         {&P::seeds,
-          choiceKey("seeds", kSeedsOf,
-                    "process of an unswept {seed} with truths that are files or of other numbers",
-                    "what `measure.seeds` is where it is not given")},
          {&P::gpu, flagKey("gpu", "whether it works on the GPU: then a run asks which that is")},
          {&P::here, "here", "folder", "that of this file", "what {here} is", text()}}};
     return table;
@@ -532,14 +529,11 @@ const Node& programOf(const Experiment& experiment) {
 
 namespace {
 
-/// Whether it draws random numbers, and truths others: what differs by words alone may share them.
-bool hasRandomErrors(const ExternalProgram& program) {
+/// Whether a truth may have the case's random numbers: it differs by words alone.
+bool mayShareSeeds(const ProgramPicture& picture) {
     const auto isNumber = [](const auto& one) { return one.value.tryDouble().has_value(); };
-    const auto isAlike = [&](const ProgramPicture& one) {
-        return one.truthParams.isMap() && std::ranges::none_of(one.truthParams.entries(), isNumber);
-    };
-    return program.uses(placeholder::kSeed) && std::ranges::none_of(program.pictures, isAlike) &&
-           std::ranges::any_of(program.pictures, &ProgramPicture::hasTruth);
+    return picture.truthParams.isMap() &&
+           std::ranges::none_of(picture.truthParams.entries(), isNumber);
 }
 
 }  // namespace
@@ -561,9 +555,6 @@ ExternalProgram readProgram(const Node& node) {
                     "program: {frame}, and one run gives all frames; allowed: "
                     "{frames}, their number");
     }
-    if (given.seeds && !program.uses(placeholder::kSeed)) {
-        throw Error(given.seeds.where(), given.seeds.in(what) + ": the command has no {seed}");
-    }
     if (given.version) {
         program.version = argumentsOf(*given.version, given.version.in(what), {placeholder::kHere});
     }
@@ -572,7 +563,7 @@ ExternalProgram readProgram(const Node& node) {
     if (given.metrics) readMetrics(given.metrics, program);
     if (given.passes) readPasses(given.passes, program);
     if (given.images) readPictures(given.images, known, program);
-    program.seedsByProcess = given.seeds ? isSecond(given.seeds) : hasRandomErrors(program);
+    program.sharesSeeds = std::ranges::any_of(program.pictures, mayShareSeeds);
     program.framesAreSeeds =
         !program.uses(placeholder::kSeed) &&
         std::ranges::any_of(program.pictures, [](const ProgramPicture& picture) {

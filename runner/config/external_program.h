@@ -82,7 +82,7 @@ struct ExternalProgram {
     bool usesGpu = false;
     bool givesAllFrames = false;  // one run all frames of a case; else each frame has its own run
     bool framesAreSeeds = false;  // without {seed}: truths are of other frames than the cases'
-    bool seedsByProcess = false;  // unless `measure.seeds` says otherwise
+    bool sharesSeeds = false;     // with {seed}: some truth may have the case's random numbers
     std::vector<ProgramParam> params;
     Outputs outputs;                           // what it says; pictures with a truth are passes
     std::vector<std::string> optionalMetrics;  // that it may leave out

@@ -50,7 +50,7 @@ const KeyTable<PrintedKeys>& printedTable() {
           listOf(text())},
          {&P::at, "at", "{parameter: value}", "{}",
           "what the paper measured at, where the profile paper departs from it: a parameter, "
-          "scene, output.width, output.height, measure.frames",
+          "scene, output.width, output.height, output.frames",
           pairs()}}};
     return table;
 }
@@ -127,7 +127,7 @@ Node::Map readAt(const GivenKey& key) {
     const Node& at = *key;
     const std::string what = "printed." + key.name();
     if (!at.isMap()) throwNotAllowed(at, what, "a map {parameter: printed value}");
-    constexpr const char* kSizes[] = {"output.width", "output.height", "measure.frames"};
+    constexpr const char* kSizes[] = {"output.width", "output.height", "output.frames"};
     Node::Map values;
     for (const auto& [name, value] : at.entries()) {
         const bool isSize = contains(kSizes, name);
@@ -136,7 +136,7 @@ Node::Map readAt(const GivenKey& key) {
                         fmt::format("{}: '{}'; allowed: a parameter, scene, {}", what, name,
                                     fmt::join(kSizes, ", ")));
         }
-        const NumberRange& range = name == "measure.frames" ? kFrameCounts : kOutputSizesPx;
+        const NumberRange& range = name == "output.frames" ? kFrameCounts : kOutputSizesPx;
         if (isSize) (void)numberIn(value, range, what + ": " + name);
         values.emplace_back(name, value);
     }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -87,8 +88,8 @@ inline constexpr const char* kProfilesKey = "profiles";
 
 /// Of `program`, of a parameter and of a picture there.
 struct ProgramKeys {
-    GivenKey command, params, metrics, passes, images, env, version, starts, files, frames, seeds,
-        gpu, here;
+    GivenKey command, params, metrics, passes, images, env, version, starts, files, frames, gpu,
+        here;
 };
 struct ParamKeys {
     GivenKey fallback, unit, min, max, choices, doc;
@@ -151,10 +152,11 @@ std::vector<SchemaSection> claimSections();
 SchemaFile experimentSchema();
 SchemaFile documentsSchema();
 
-/// The `measure` and `output` sections, which are maps. Of `measure` lane and seeds may be other
-/// ones where the section does not name them.
+/// The `measure` and `output` sections, which are maps. `measure` is where the section says
+/// nothing.
 Measure readMeasure(const Node& map, Measure measure);
-std::pair<int, int> readOutput(const Node& map);
+/// Width and height in pixels, and how many frames.
+std::tuple<int, int, int> readOutput(const Node& map);
 
 /// A reference with a file extension is a file beside the one that names it, or in `folder`.
 Node withSceneFile(const Node& reference, const std::optional<std::filesystem::path>& folder = {});

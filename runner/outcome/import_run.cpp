@@ -157,7 +157,6 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
     item.outputHeightPx = outputSize(given, kOutputHeight, experiment.outputHeightPx);
     item.measure = experiment.measure;
     item.measure.processes = processesAskedOf(given);
-    item.measure.relativeError = 0.0;
     item.measure.isWithinBudget = item.measure.processes > 1;
     item.measure.seeds = given.hasSeeds ? config::Measure::Seeds::Process : seedsOf(given);
     return item;

@@ -391,7 +391,7 @@ class FrameLoop {
         return millisecondsSince(begin);
     }
     void warmUp(technique::FrameContext& frame) {
-        for (int i = 0; i < measure_.warmup; ++i) drawUnmeasuredMs(frame);
+        for (int i = 0; i < measure_.warmup(); ++i) drawUnmeasuredMs(frame);
         const Clock::time_point begin = Clock::now();
         const auto spentS = [&] { return 1e-3 * millisecondsSince(begin); };
         std::vector<double> timesMs;

@@ -90,7 +90,7 @@ void noticeSuspensions();
 /// Process `process` of the case: constructor → load → set-up → warm-ups → frames × repeats →
 /// record. A program, which starts anew for each frame, is warmed up in the first process alone.
 /// Technique::recordOnce follows there, and where the picture is another than the first process's
-/// or the seed is (`seeds: process`). Beside the technique's own metrics it gives, for each repeat
+/// or the seed is. Beside the technique's own metrics it gives, for each repeat
 /// of a frame, wall_time_ms, frame_rate, gpu_time_ms and cpu_time_ms a pass, on a software device
 /// with the CPU time of all threads of the process beside them (process_time_ms, of the whole frame
 /// and a pass); in the timing lane work_primitives, work_fragments, work_compute_invocations and

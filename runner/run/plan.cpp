@@ -67,6 +67,7 @@ Plan makePlan(const std::vector<config::Experiment>& experiments, const scene::C
                                       first->first + "'; allowed: one of them in a run"));
         }
         std::vector<Case> cases = resolveCases(experiment, catalog, techniques, seed);
+        if (!cases.empty()) experiment.measure.seeds = cases.front().measure.seeds;
         bindAssumptions(experiment, cases, catalog, techniques);
         if (experiment.hasDefaultLayout()) {
             experiment.outputs =

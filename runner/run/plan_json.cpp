@@ -71,10 +71,8 @@ constexpr JsonMember kCase[] = {{"/id", JsonKind::Text},
 /// What a plan has of `measure` in numbers, each key once.
 template <class Measure, class Each>
 void eachNumber(Measure& measure, Each each) {
-    each("/warmup", measure.warmup);
     each("/repeats", measure.repeats);
     each("/processes", measure.processes);
-    each("/relative_error", measure.relativeError);
     each("/time_budget_s", measure.timeBudgetS);
     each("/frames", measure.frames);
     each("/time_limit_s", measure.timeLimitS);

@@ -246,7 +246,7 @@ void requireRead(const config::Experiment& experiment, const std::vector<Case>& 
     const bool hasSeeds =
         std::ranges::any_of(cases, [&](const Case& item) { return mayHaveSeeds(item, catalog); });
     const SourceLocation seeds =
-        placeOf(config::measureOf(experiment.document).sceneSeeds, experiment);
+        placeOf(config::contentOf(experiment.document).sceneSeeds, experiment);
     if (experiment.measure.sceneSeeds < 2 || hasSeeds || !isOwn(seeds)) return;
     throw Error(seeds, fmt::format("'scene_seeds' is {}, and no case has a generated scene",
                                    experiment.measure.sceneSeeds));
@@ -319,26 +319,14 @@ void requireModestTitle(const config::Experiment& experiment, const Case& item) 
                                    what, longest, size, kMostBytes));
 }
 
-/// Throws Error, at the place of `measure.frames`, for more of them than the technique has.
+/// Throws Error, at the place of `output.frames`, for more of them than the technique has.
 void requireFrames(const technique::Technique& technique, const config::Experiment& experiment) {
     try {
         technique.requireFrames(experiment.measure.frames);
     } catch (const Error& error) {
-        throw Error(placeOf(config::measureOf(experiment.document).frames, experiment),
+        throw Error(placeOf(config::outputOf(experiment.document).frames, experiment),
                     error.what());
     }
-}
-
-/// The seeds of its cases. Throws Error where the config speaks of them, and there are none.
-config::Measure::Seeds seedsOf(const config::Experiment& experiment,
-                               const technique::TechniqueInfo& info) {
-    if (info.createFrom || info.outputs().areRandom) return experiment.measure.seeds;
-    if (const GivenKey seeds = config::measureOf(experiment.document).seeds) {
-        throw Error(seeds.where(),
-                    fmt::format("measure: seeds: technique '{}' draws no random numbers",
-                                experiment.technique));
-    }
-    return config::Measure::Seeds::None;
 }
 
 /// What a technique needs beside a swept parameter, with how a sweep says so.
@@ -391,10 +379,10 @@ void forEachCase(const config::Experiment& experiment, const scene::Catalog& cat
         placeOf(config::contentOf(experiment.document).technique, experiment));
     std::vector<Case> cases = config::expandCases(experiment);
     requireCaseCount(cases.size(), experiment);
-    const config::Measure::Seeds seeds = seedsOf(experiment, info);
+    const bool drawsNumbers = !info.createFrom && info.outputs().areRandom;
     for (Case& given : cases) {
         Case item = std::move(given);
-        item.measure.seeds = seeds;
+        if (drawsNumbers) item.measure.seeds = config::Measure::Seeds::Process;
         takeInstead(experiment.paramsInstead, item);
         item.program = config::programOf(experiment);
         Params params(item.given, "technique '" + std::string(info.name) + "'");

@@ -195,7 +195,7 @@ std::vector<Unit> Rounds::next(const std::string& experiment) {
     const bool isAffordable = measure.mayFollow(measured, table.spent.count() / measured);
     const bool isAsked = process < measure.processes;
     const bool isUnknown = measure.mayContinue() && process < config::kMostRounds &&
-                           !table.times.isKnownTo(measure.relativeError, measure.processes);
+                           !table.times.isKnownTo(config::kKnownTo, measure.processes);
     const bool isWanted = rounds > 0 && (isAsked || isUnknown);
     if (isWanted && isAffordable && !cases.empty()) {
         table.roundsBegun = measured + 1;

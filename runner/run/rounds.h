@@ -27,7 +27,7 @@ namespace gfxrepro::run {
 std::vector<Unit> unitsOf(const Plan& plan, const std::vector<records::Record>& records = {});
 
 /// Decides after each round of a table of times whether another follows: while the time of some
-/// case is not known to its `relative_error` (tables::FrameTimes::isKnownTo), there are fewer than
+/// case is not known to config::kKnownTo (tables::FrameTimes::isKnownTo), there are fewer than
 /// config::kMostRounds, and the next may follow by `time_budget_s` (Measure::mayFollow). A decision
 /// is final, also for a run that is resumed.
 class Rounds {
@@ -56,7 +56,7 @@ class Rounds {
     std::vector<std::string> undecided() const;
 
     /// {"table", "rounds", "ended_by", "relative_error", "seconds"}; null while it is undecided.
-    /// "ended_by" is a key of `measure` (tables::endOfRounds).
+    /// "ended_by" is as in tables::endOfRounds.
     Json ending(const std::string& experiment) const;
     /// The endings of all experiments that have one, by name: for the manifest. Of a table with
     /// times of another "times_of" is that table, and "taken" of how many of its "cases".

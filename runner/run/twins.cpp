@@ -32,13 +32,13 @@ bool hasTimes(const Case& item) {
 
 std::string workKey(const Case& item) {
     const config::Measure& measure = item.measure;
-    Json content = {
-        {"technique", item.technique},
-        {"scene", item.scene.toJson()},
-        {"params", item.params.toJson()},
-        {"output", {item.outputWidthPx, item.outputHeightPx}},
-        {"measure",
-         {measure.warmup, measure.repeats, measure.processes, measure.frames, measure.timeLimitS}}};
+    Json content = {{"technique", item.technique},
+                    {"scene", item.scene.toJson()},
+                    {"params", item.params.toJson()},
+                    {"output", {item.outputWidthPx, item.outputHeightPx}},
+                    {"measure",
+                     {measure.warmup(), measure.repeats, measure.processes, measure.frames,
+                      measure.timeLimitS}}};
     if (!item.program.isNull()) content["program"] = {item.program.toJson(), item.programKey};
     if (!hasTimes(item)) content["params"].erase("pictures");
     spellNumbersAlike(content);

@@ -216,7 +216,7 @@ ThereIs whatIsThere(const CellQuery& query, const LayoutCases& cases) {
     return there;
 }
 
-/// What else the cell takes together: seeds of scenes, and frames, as `measure` asks for.
+/// What else the cell takes together: seeds of scenes, and frames, as the config asks for.
 void addSampled(const CellQuery& query, const LayoutCases& cases, std::size_t frames, Cell& cell) {
     std::size_t seeds = 1;
     for (const CaseRecords* one : casesAt(query.where, cases)) {
@@ -310,7 +310,7 @@ void fillValues(const CellQuery& query, const Gathered& gathered, Cell& cell) {
     if (unknown != cell.values.end()) {
         cell.status = records::Status::Missing;
         cell.message = fmt::format("'{}' needs two {} or more", unknown->statistic,
-                                   isOfOneSeed ? "seeds (`seeds: process`)" : "values");
+                                   isOfOneSeed ? "seeds" : "values");
         cell.seedCount = gathered.seeds.size();
         cell.values.clear();
         return;
@@ -455,7 +455,7 @@ void fillEqual(const CellQuery& query, const LayoutCases& cases, Cell& cell) {
     if (std::ranges::count(cell.pooled, kSeedAxis, &Pooled::axis) > 0) {
         along.clear();
         gathered.note(records::Status::Missing,
-                      "equal takes no swept seed: 'measure: {seeds: process}' draws several");
+                      "equal takes no swept seed: each process of an unswept one has another");
     }
     for (const std::string& metric : {query.metric, query.equal->metric}) {
         if (!cell.isPlanned || cases.recordedInstead(metric).empty()) continue;

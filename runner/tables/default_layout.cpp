@@ -389,7 +389,7 @@ std::vector<std::string> frameNotes(const config::Experiment& experiment,
         if (info.unit != "frame" || isRecorded) continue;
         notes.push_back(fmt::format(
             "One frame of each case is measured: the {}, and whatever follows from frames before, "
-            "needs several (`measure: {{frames: 20}}`).",
+            "needs several (`output: {{frames: 20}}`).",
             quantityOf(info.name, experiment.labels).words));
     }
     return notes;

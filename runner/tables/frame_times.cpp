@@ -19,6 +19,7 @@ static_assert(config::kFewestRounds == metrics::kFewestForInterval);
 constexpr std::size_t kNewRounds = 2;
 /// Fewer rounds do not end by a relative error.
 constexpr std::size_t kFewestByError = 14;
+constexpr const char* kEndedByError = "relative_error";
 
 std::vector<double> roundValues(const std::map<int, double>& rounds) {
     std::vector<double> values;
@@ -248,7 +249,7 @@ std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& t
     const bool hasAsked = times.roundCount() >= static_cast<std::size_t>(measure.processes);
     if (!hasAsked && measure.certainRounds() < measure.processes) return config::kTimeBudget;
     if (!measure.mayContinue()) return "processes";
-    if (times.isKnownTo(measure.relativeError, measure.processes)) return config::kRelativeError;
+    if (times.isKnownTo(config::kKnownTo, measure.processes)) return kEndedByError;
     const bool isMost = times.roundCount() >= static_cast<std::size_t>(config::kMostRounds);
     return isMost ? "most_rounds" : config::kTimeBudget;
 }
@@ -258,7 +259,7 @@ namespace {
 /// What a reader is told of `endOfRounds`.
 std::string_view endInWords(std::string_view end) {
     if (end == config::kTimeBudget) return "as many as the time allowed";
-    if (end == config::kRelativeError) return "until the times were known";
+    if (end == kEndedByError) return "until the times were known";
     return end == "most_rounds" ? "the most that are allowed" : "as many as asked for";
 }
 
@@ -282,9 +283,8 @@ std::vector<std::string> timeNotes(const FrameTimes& times, const config::Measur
                 : ""));
     } else if (error) {
         const std::string target =
-            measure.mayContinue()
-                ? fmt::format(" (asked for: {})", percentText(measure.relativeError))
-                : "";
+            measure.mayContinue() ? fmt::format(" (asked for: {})", percentText(config::kKnownTo))
+                                  : "";
         notes.push_back(fmt::format("Times of {} rounds, {}; {} is known to ±{} or better{}.",
                                     rounds, endInWords(endOfRounds(measure, times)),
                                     judgedName(times), percentText(*error), target));

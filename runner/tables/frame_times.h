@@ -90,7 +90,7 @@ class FrameTimes {
 std::optional<double> columnNoise(const Table& table, const std::vector<std::string>& labels,
                                   Clock clock);
 
-/// Which condition of `measure` ended the rounds: "processes" (as many as asked for, no more),
+/// What ended the rounds: "processes" (as many as asked for, no more),
 /// "relative_error", "most_rounds", or "time_budget_s".
 std::string_view endOfRounds(const config::Measure& measure, const FrameTimes& times);
 

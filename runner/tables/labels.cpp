@@ -36,7 +36,7 @@ constexpr Suffix kSuffixes[] = {{"_ms", "ms", "time"},
 /// What the runner itself gives a case.
 constexpr Suffix kOwn[] = {{"output.width", "px", "width of the image"},
                            {"output.height", "px", "height of the image"},
-                           {"measure.frames", "", "frames"}};
+                           {"output.frames", "", "frames"}};
 
 bool isWordCharacter(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';

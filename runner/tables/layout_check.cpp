@@ -58,7 +58,7 @@ void requireValues(const config::Selection& selection, std::span<const LayoutCas
         for (const Node& one : wanted.isSequence() ? wanted.items() : Node::Sequence{wanted}) {
             if (isThere(one)) continue;
             const bool isPath = axis == "frame" && !profiles.front().isOfElsewhere;
-            const char* more = isPath ? "; 'measure: {frames: N}' draws N of them" : "";
+            const char* more = isPath ? "; 'output: {frames: N}' draws N of them" : "";
             throwNotAllowed(one, "layout: where." + axis, shortened(values, " | ") + more);
         }
     }
@@ -235,7 +235,7 @@ void requireStatistics(const config::Experiment& experiment, std::span<const con
                 if (!isOfSeveral) continue;
                 throw Error(query.location,
                             fmt::format("layout: column '{}' shows the {} of one value in each "
-                                        "process; allowed: median, or 'measure: {{frames}}'",
+                                        "process; allowed: median, or 'output: {{frames}}'",
                                         column.label, shown.name));
             }
         }

@@ -197,7 +197,7 @@ std::string settingText(const Json& value) {
 
 /// Under which name settings have what `printed.at` names.
 std::string settingNameOf(const std::string& name) {
-    if (name == "measure.frames") return "frames";
+    if (name == "output.frames") return "frames";
     return name.starts_with("output.") ? "output" : name;
 }
 
@@ -207,7 +207,7 @@ void layPrintedOver(const config::Printed& printed, std::string& scene, Json& pa
     for (const auto& [name, value] : printed.at) {
         if (name == "scene") {
             scene = value.text();
-        } else if (name == "measure.frames") {
+        } else if (name == "output.frames") {
             frames = value.toJson();
         } else if (name == "output.width" || name == "output.height") {
             params["output"][name.substr(name.find('.') + 1)] = value.toJson();

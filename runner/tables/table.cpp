@@ -135,7 +135,7 @@ std::string seedNote(const Table& table) {
     if (const std::string columns = columnsWith(&Cell::isOfOneSeed); !columns.empty()) {
         note = fmt::format(
             "One seed, and another would give other numbers: {}. How far apart they are `measure: "
-            "{{seeds: process, processes: 6}}` tells.",
+            "{{processes: 6}}` tells where the seed is not swept.",
             columns);
     }
     const auto differs = [](const Cell& cell) {

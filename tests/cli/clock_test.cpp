@@ -19,7 +19,7 @@ class BrokenClock : public testing::Test {
                         "sweep_of: torus\ntitle: A torus\ntechnique: voxelization\n"
                         "scene: shapes/torus\nparams: {resolution: 32}\n"
                         "output: {width: 32, height: 32}\n"
-                        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 20}\n");
+                        "measure: {lane: timing, processes: 1, repeats: 20}\n");
     }
     ProcessResult with(const std::string& clock, std::vector<std::string> arguments,
                        const std::string& more = "") const {

@@ -31,7 +31,7 @@ class Compare : public ::testing::Test {
         const fs::path config =
             writeMockConfig(folder,
                             "params: {busy_ms: 20}\n"
-                            "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n");
+                            "measure: {lane: timing, processes: 1, repeats: 2}\n");
         return mockGfxrepro({"compare", "--binaries", "--rounds", "8", "--profile", "full",
                              "--device", "software", "--history", history, "--out", out,
                              program("old", 0), program("new", extraMs), config});

@@ -110,10 +110,9 @@ TEST_F(DeviceChoice, AWordThatIsNoDeviceIsAMistakeOfTheCommandLine) {
 
 TEST_F(DeviceChoice, OnAGpuAFrameIsRepeatedByTime) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
-    config = writeMockConfig(
-        folder,
-        "params: {pause_ms: 20}\n"
-        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2, frames: 1}\n");
+    config = writeMockConfig(folder,
+                             "params: {pause_ms: 20}\n"
+                             "measure: {lane: timing, processes: 1, repeats: 2}\n");
     const ProcessResult run = endedWith(0, onPretended("gpu"));
     const auto rows = [&](const char* metric) {
         return rowsOf(folder.path() / ("run-" + std::to_string(count)), metric).size();
@@ -153,10 +152,9 @@ TEST_F(DeviceChoice, OfSeveralGpusThatOfTheClusterIsTaken) {
 
 TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
     if (hasRealGpu()) GTEST_SKIP() << "a GPU is here: which the pretended one would stand behind";
-    config = writeMockConfig(
-        folder,
-        "params: {pause_ms: 20}\n"
-        "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2, frames: 1}\n");
+    config = writeMockConfig(folder,
+                             "params: {pause_ms: 20}\n"
+                             "measure: {lane: timing, processes: 1, repeats: 2}\n");
     ASSERT_EQ(onPretended("gpu", "serves", {kNvml}).exitCode, 0);
     const auto gpuOf = [&] { return lastManifest()["machine_states"].begin()->at("gpu"); };
     EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.98e9);

@@ -129,7 +129,7 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
         const std::string config = writeMockConfig(folder, lines);
         return mockGfxrepro({"check", config}).out;
     };
-    const std::string many = "measure: {lane: quality, frames: 500, processes: ";
+    const std::string many = "output: {frames: 500}\nmeasure: {lane: quality, processes: ";
     EXPECT_THAT(rows(many + "10}\n"), Not(HasSubstr("million")));
     EXPECT_THAT(
         rows(many + "1000}\n"),
@@ -207,8 +207,8 @@ TEST_F(Faults, APerfectPictureIsInfinitelyGood) {
 }
 
 TEST_F(Faults, WhatSetUpMeasuredIsNoFrame) {
-    const std::string config =
-        writeMockConfig(folder, "measure: {lane: timing, processes: 1, frames: 2, repeats: 2}\n");
+    const std::string config = writeMockConfig(
+        folder, "output: {frames: 2}\nmeasure: {lane: timing, processes: 1, repeats: 2}\n");
     EXPECT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     ASSERT_EQ(rowsOf(dir, "setup_time_ms").size(), 1U);
     EXPECT_EQ(rowsOf(dir, "setup_time_ms")[0].frame, records::kSetup);
@@ -301,12 +301,10 @@ std::vector<std::pair<int, double>> roundsOf(const std::string& dir) {
 TEST_F(Faults, TimesAreMeasuredInRounds) {
     const auto measure = [&](const std::string& keys, const std::string& into) {
         const std::string config = writeMockConfig(
-            folder,
-            "sweep: {number: [1, 2]}\nparams: {pause_ms: 5}\n"
-            "measure: {lane: timing, " +
-                keys +
-                "}\n"
-                "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
+            folder, "sweep: {number: [1, 2]}\nparams: {behaviour: uneven, busy_ms: 2, marker: " +
+                        (folder.path() / "turn").string() + "}\nmeasure: {lane: timing, " + keys +
+                        "}\n"
+                        "layout:\n  rows: number\n  columns:\n    ms: {metric: wall_time_ms}\n");
         endedWith(0, mockGfxrepro({"run", config, "--out", into}));
         EXPECT_EQ(mockGfxrepro({"table", into}).exitCode, 0);
         return readFile(into + "/tables/sweep-mock.md");
@@ -316,8 +314,8 @@ TEST_F(Faults, TimesAreMeasuredInRounds) {
     EXPECT_THAT(roundsOf(fixed),
                 ElementsAre(std::pair(0, 1.0), std::pair(0, 2.0), std::pair(1, 2.0),
                             std::pair(1, 1.0), std::pair(2, 1.0), std::pair(2, 2.0)));
-    // No time is ever known to a millionth: rounds go on until they are as many as allowed.
-    const std::string table = measure("processes: 6, relative_error: 0.000001", dir);
+    // Uneven times are never known: rounds go on until they are as many as allowed.
+    const std::string table = measure("processes: 6, time_budget_s: 60", dir);
     EXPECT_THAT(table, HasSubstr("Times of 20 rounds, the most that are allowed"));
     EXPECT_THAT(table, HasSubstr("Noise of this table"));
     EXPECT_EQ(roundsOf(dir).size(), 40U);
@@ -450,12 +448,12 @@ TEST_F(Overrides, ANumberThatWasAColumnIsNoConstant) {
 }
 
 TEST_F(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
-    const std::string config = writeMockConfig(folder, "measure: {frames: 501}\n");
+    const std::string config = writeMockConfig(folder, "output: {frames: 501}\n");
     for (const char* command : {"check", "plan", "run"}) {
         EXPECT_THAT(endedWith(2, mockGfxrepro({command, config})).err,
-                    HasSubstr(":19: the mock has 500 frames\n"));
+                    HasSubstr(":18: the mock has 500 frames\n"));
     }
-    const std::string all = writeMockConfig(folder, "measure: {frames: 500}\n");
+    const std::string all = writeMockConfig(folder, "output: {frames: 500}\n");
     EXPECT_EQ(mockGfxrepro({"check", all}).exitCode, 0);
 }
 

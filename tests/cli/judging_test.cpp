@@ -17,7 +17,7 @@ TEST(Judging, ACauseOfGeneratedScenesIsOfThoseThatWereLoaded) {
     for (const char* lines : {"scene: models/duck\n", "scene: models/duck@3\n",
                               "scene: models/duck\nscene_params: {shape: hugo}\n",
                               "scene: models/duck\nscene_instead: {models/duck: shapes/sphere}\n",
-                              "scene: models/duck\nmeasure: {lane: quality, scene_seeds: 2}\n"}) {
+                              "scene: models/duck\nscene_seeds: 2\nmeasure: {lane: quality}\n"}) {
         const TemporaryFolder folder;
         const std::string config = writeMockConfig(
             folder, std::string(lines) +

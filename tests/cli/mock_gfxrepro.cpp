@@ -42,6 +42,7 @@ enum class Behaviour {
     Flake,
     Blank,
     Unequal,
+    Uneven,
     Suspended
 };
 
@@ -60,6 +61,7 @@ constexpr Choice<Behaviour> kBehaviours[] = {
     {Behaviour::Flake, "flake", "crashes unless `marker` is there, and makes it"},
     {Behaviour::Blank, "blank", "shows nothing"},
     {Behaviour::Unequal, "unequal", "shows something else in every repeat"},
+    {Behaviour::Uneven, "uneven", "is slow in every other process, of which `marker` tells"},
     {Behaviour::Suspended, "suspended", "goes on as after SIGSTOP"},
 };
 
@@ -99,6 +101,13 @@ class Mock : public technique::Technique {
 
     void setup(technique::SetupContext& context) override {
         const Logged logged("setup", number_);
+        if (behaviour_ == Behaviour::Uneven) {
+            const std::string turn = marker_ + std::to_string(number_);
+            if (!std::filesystem::remove(turn)) {
+                busyMs_ *= 10;
+                std::ofstream(turn) << "slow";
+            }
+        }
         if (const char* pause = std::getenv("GFXREPRO_MOCK_SETUP_MS")) {
             std::this_thread::sleep_for(std::chrono::milliseconds(std::atoi(pause)));
         }
@@ -116,6 +125,7 @@ class Mock : public technique::Technique {
         compute(busyMs_ + (slower ? std::atof(slower) : 0));
         switch (behaviour_) {
             case Behaviour::Ok:
+            case Behaviour::Uneven:
             case Behaviour::NotANumber:
             case Behaviour::Infinite:
             case Behaviour::Twice:
@@ -251,6 +261,11 @@ class Dice : public technique::Technique {
 config::Outputs diceOutputs() {
     return {{{"face", "1", "what was thrown"}, {"worth", "1", "what it is worth"}}, {}, true};
 }
+config::Outputs loadedOutputs() {
+    config::Outputs outputs = diceOutputs();
+    outputs.areRandom = false;
+    return outputs;
+}
 
 }  // namespace
 
@@ -265,6 +280,7 @@ int main(int argc, char** argv) {
         {"mock_on_cpu", "likewise, with no device", technique::make<Mock>, outputs, nullptr, true},
         {"mock_of_scenes", "likewise, with a scene", technique::make<MockOfScenes>, outputs},
         {"dice", "throws", technique::make<Dice>, diceOutputs},
+        {"loaded_dice", "falls alike", technique::make<Dice>, loadedOutputs},
         external::kExternal};
     return cli::run(argc, argv, techniques, scene::registeredGenerators());
 }

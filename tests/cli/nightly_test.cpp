@@ -21,7 +21,7 @@ class Nightly : public ::testing::Test {
   protected:
     /// What nights look for in most tests shows without times.
     std::string measure() const {
-        return isTimed ? "measure: {lane: timing, processes: 1, warmup: 0, repeats: 2}\n"
+        return isTimed ? "measure: {lane: timing, processes: 1, repeats: 2}\n"
                        : "measure: {lane: quality, processes: 1}\n";
     }
     /// A bundle of the mock program, slower by `extraUs` in each iteration, its picture of `shade`.

@@ -519,7 +519,7 @@ TEST_F(OwnExperiment, CheckKnowsCases) {
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: [32, 128]}}"),
                 EndsWith(": layout: where.resolution is 128; allowed: 32 | 64\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: 32, frame: 1}}"),
-                EndsWith(": layout: where.frame is 1; allowed: 0; 'measure: {frames: N}' "
+                EndsWith(": layout: where.frame is 1; allowed: 0; 'output: {frames: N}' "
                          "draws N of them\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 64}}"),
                 EndsWith(": layout: column 'a' is of no case: none has fill=solid, resolution=64, "
@@ -536,7 +536,7 @@ TEST_F(OwnExperiment, CheckKnowsCases) {
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
                         "'{sum:.0f}'}"),
                 EndsWith(": layout: column 'a' shows the sum of one value in each process; "
-                         "allowed: median, or 'measure: {frames}'\n"));
+                         "allowed: median, or 'output: {frames}'\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
                         "'{stddev:.0f}'}"),
                 HasSubstr("shows the stddev of one value"));

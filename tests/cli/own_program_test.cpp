@@ -57,7 +57,7 @@ TEST_F(OwnProgram, ATestOfMeansIsOfATruthOfSeveralFrames) {
     several.command = "true {n} {pattern} {frame} {out}/p.pfm";
     several.truth = "{n: 4096, frame: 1000, frames: 6}";
     EXPECT_EQ(check("claims: {b: {says: so, bound: bias_seen, at_most: 0.1}}\n"
-                    "measure: {frames: 4}\n",
+                    "output: {frames: 4}\n",
                     several)
                   .err,
               "");
@@ -105,7 +105,7 @@ TEST_F(OwnProgram, ATruthIsNoCase) {
               "has\n");
     EXPECT_THAT(of("{n: 16, seed: 5001}"), HasSubstr("makes the case")) << "of the sixth process";
     EXPECT_EQ(of("{n: 16, seed: 6001}"), "");
-    const std::string goesOn = "measure: {processes: 6, relative_error: 0.02}\n";
+    const std::string goesOn = "measure: {processes: 6, time_budget_s: 60}\n";
     EXPECT_THAT(of("{n: 16, seed: 19001}", goesOn), HasSubstr("makes the case")) << "the last";
     EXPECT_EQ(of("{n: 16, seed: 20001}", goesOn), "");
     EXPECT_EQ(of("{n: 16, seed: 2}"), "");
@@ -184,11 +184,11 @@ TEST_F(OwnProgram, AQuotientOfTimesIsATime) {
     const auto file = folder.write("mine.yaml",
                                    "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
                                    "scene: models/duck\nsweep: {rule: [rasterized, thin]}\n"
-                                   "measure: {lane: quality, scene_seeds: 3}\n"
+                                   "scene_seeds: 3\nmeasure: {lane: quality}\n"
                                    "claims: {c: {says: so, bound: \"frame ÷ rasterized\", "
                                    "at_most: 1.2}}\n");
     EXPECT_THAT(gfxrepro({"check", file}).err,
-                HasSubstr("mine.yaml:7:10: 'scene_seeds' takes no times, and claim 'c' reads "
+                HasSubstr("mine.yaml:8:10: 'scene_seeds' takes no times, and claim 'c' reads "
                           "'frame ÷ rasterized'; allowed: scene_seeds: 1\n"));
 }
 

@@ -26,7 +26,7 @@ std::string largeConfig(const TemporaryFolder& folder, const std::string& axes) 
                         "sweep_of: large\ntitle: A hundred thousand cases\n"
                         "technique: voxelization\nscene: shapes/torus\n"
                         "params: {resolution: 32, draw: opaque}\n"
-                        "measure: {lane: quality, warmup: 0, repeats: 1}\n"
+                        "measure: {lane: quality, repeats: 1}\n"
                         "sweep:\n" +
                             axes + "output: {width: 64}\n");
 }

@@ -62,7 +62,7 @@ TEST_F(Frames, GivesAllFramesInOneRun) {
         "  passes: {draw: drawing}\n"
         "  images: {result: {file: \"frame_{frame}.png\", truth: {from: 4, behaviour: well}}}\n"
         "sweep: {behaviour: [well, beyond, missing, unsaid, half]}\n"
-        "measure: {lane: timing, frames: 3, repeats: 2, warmup: 1, processes: 1}\n");
+        "output: {frames: 3}\nmeasure: {lane: timing, repeats: 2, processes: 1}\n");
     const ProcessResult result = run(config);
     EXPECT_EQ(result.exitCode, 4) << result.err;
     std::vector<std::string> lines = statusLines(dir);
@@ -145,10 +145,10 @@ TEST_F(Frames, SeedsAreOfTheCaseAndOfItsProcess) {
         std::ranges::sort(numbers);
         return numbers;
     };
-    EXPECT_THAT(numbersWith("}\nmeasure: {lane: quality}\n"), ElementsAre(1));
+    EXPECT_THAT(numbersWith("}\nmeasure: {lane: quality, processes: 1}\n"), ElementsAre(1));
     EXPECT_THAT(numbersWith("}\nsweep: {seed: [3, 8]}\nmeasure: {lane: quality, processes: 2}\n"),
                 ElementsAre(3, 3, 8, 8));
-    EXPECT_THAT(numbersWith(", seeds: process}\nparams: {seed: 5}\n"
+    EXPECT_THAT(numbersWith("}\nparams: {seed: 5}\n"
                             "measure: {lane: quality, processes: 3}\n"),
                 ElementsAre(5, 1005, 2005));
 }

@@ -461,8 +461,8 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
               "'number'?\n");
     EXPECT_EQ(check("scene: models/duck\n"),
               "mine.yaml:11:1: 'scene': the program's command has no {scene}\n");
-    EXPECT_EQ(check("measure: {lane: quality, frames: 2}\n"),
-              "mine.yaml:11:1: 'measure': the program's command has no {frame}, of which there are "
+    EXPECT_EQ(check("output: {frames: 2}\nmeasure: {lane: quality}\n"),
+              "mine.yaml:11:1: 'output': the program's command has no {frame}, of which there are "
               "several\n");
     write("");
     const std::string inItsFolder =

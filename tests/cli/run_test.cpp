@@ -75,10 +75,11 @@ TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
     const std::string config = folder.write(
         "room.yaml",
         "sweep_of: room\ntitle: R\ntechnique: reflection_reuse\n"
-        "measure: {lane: quality, frames: 2}\n"
+        "measure: {lane: quality}\n"
         "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, first_frame: "
         "3, motion: true}\n"
-        "output: {width: 64, height: 48}\nsweep: {scene: [indoor/living_room, room.glb]}\n");
+        "output: {width: 64, height: 48, frames: 2}\nsweep: {scene: [indoor/living_room, "
+        "room.glb]}\n");
     endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     std::vector<fs::path> pictures;
     for (const auto& entry : fs::recursive_directory_iterator(dir + "/images")) {
@@ -148,8 +149,8 @@ TEST_F(RunCommand, TablesSayAtWhichParametersTheyWereMeasured) {
     EXPECT_EQ(parametersOf(config, folder.path() / "only", {"--only", "number=1"}),
               "Measured at the parameters of the profile paper.");
     const std::string at = printedConfig(folder,
-                                         "  paper: {printed: {at: {measure.frames: 500}}, "
-                                         "measure: {frames: 3}}\n");
+                                         "  paper: {printed: {at: {output.frames: 500}}, "
+                                         "output: {frames: 3}}\n");
     EXPECT_EQ(parametersOf(at, folder.path() / "at", {"--profile", "paper"}),
               "Measured at frames 3 (printed 500).");
 }

@@ -169,9 +169,9 @@ TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
     for (const char* processes : {"1", "2"}) {  // workers that go on, and one for each unit
         fs::remove(folder.path() / "log");
         turns.clear();
-        const run::RunOutcome outcome = measureLogged(
-            std::string("sweep: {number: [1, 2]}\nparams: {pause_ms: 100}\n") +
-            "measure: {lane: timing, warmup: 0, repeats: 1, processes: " + processes + "}\n");
+        const run::RunOutcome outcome =
+            measureLogged(std::string("sweep: {number: [1, 2]}\nparams: {pause_ms: 100}\n") +
+                          "measure: {lane: timing, repeats: 1, processes: " + processes + "}\n");
         const int units = 2 * std::stoi(processes);
         EXPECT_EQ(outcome.finished, units);
         const std::vector<std::string> lines = logLines();
@@ -196,7 +196,7 @@ TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
 TEST_F(PairedUnits, AWaitIsNoPartOfALimit) {
     const run::RunOutcome outcome = measureLogged(
         "sweep: {number: [1, 2]}\nparams: {pause_ms: 2000}\n"
-        "measure: {lane: timing, warmup: 0, repeats: 1, processes: 1, time_limit_s: 3.5}\n");
+        "measure: {lane: timing, repeats: 1, processes: 1, time_limit_s: 3.5}\n");
     EXPECT_EQ(outcome.finished, 2);
     EXPECT_EQ(outcome.flaky, 0);
 }
@@ -206,7 +206,7 @@ TEST_F(PairedUnits, WhenOneCrashesTheOtherGoesOnAndThenItIsTriedAlone) {
         "sweep: {list: [[{behaviour: flake, number: 1}, {behaviour: ok, number: 2}]]}\n"
         "params: {marker: " +
         (folder.path() / "marker").string() +
-        "}\nmeasure: {lane: timing, warmup: 0, repeats: 1, processes: 1}\n");
+        "}\nmeasure: {lane: timing, repeats: 1, processes: 1}\n");
     EXPECT_EQ(outcome.finished, 2);
     EXPECT_EQ(outcome.flaky, 1);
     EXPECT_THAT(turns, ElementsAre(2, 1, 1));

@@ -131,7 +131,7 @@ struct ClaimKeys {
 /// What `check` knows of how a claim will be measured.
 struct Sampling {
     std::size_t rows = 0;
-    int frames = 1;  // measure.frames
+    int frames = 1;  // output.frames
     /// The fewest pictures of a truth that has several, 0 where none has; absent: a technique takes
     /// them.
     std::optional<int> truthFrames = std::nullopt;

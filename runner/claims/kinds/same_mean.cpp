@@ -59,14 +59,14 @@ std::string refusedSameMean(const ClaimSpec& claim, const Sampling& sampling) {
         return "is 'same_mean' and needs an image whose truth has several 'frames': {frame: 1000, "
                "frames: 6}";
     }
-    if (frames < 2) return "is 'same_mean' and needs 'measure.frames', a seed each: 2 or more";
+    if (frames < 2) return "is 'same_mean' and needs 'output.frames', a seed each: 2 or more";
     const auto rows = static_cast<double>(sampling.rows);
     const double least =
         rows * metrics::leastP(static_cast<std::size_t>(frames), static_cast<std::size_t>(truths));
     if (least <= *claim.low) return "";
     return fmt::format(
         "asks for {:.3g} % of false alarms over {} row{}, and could not fail: {} frames and {} of "
-        "the truth come to no p below {:.2g} %; take more ('measure.frames', 'truth: {{frames}}')",
+        "the truth come to no p below {:.2g} %; take more ('output.frames', 'truth: {{frames}}')",
         100.0 * *claim.low, rows, rows == 1.0 ? "" : "s", frames, truths, 100.0 * least);
 }
 

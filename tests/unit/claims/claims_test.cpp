@@ -466,7 +466,7 @@ TEST(Claims, OnlyWhatHasAnIntervalIsKnownAsAmbiguous) {
         return refusalOf(experiment);
     };
     const std::string count = "measure: {lane: quality}\n";
-    const std::string five = "measure: {lane: quality, scene_seeds: 5}\n";
+    const std::string five = "scene_seeds: 5\nmeasure: {lane: quality}\n";
     const std::string times = "measure: {lane: timing, processes: 6}\n";
     const std::string known = ", because: {verdict: ambiguous, reason: r}";
     const std::string refused =
@@ -1125,8 +1125,8 @@ tables::Recorded twoSamplers(config::Measure::Seeds seeds, int processes, std::u
 TEST(Claims, RandomNumbersOfOneSeedDecideNothing) {
     using Seeds = config::Measure::Seeds;
     const std::string more =
-        "; an interval needs 6: `measure: {seeds: process, processes: 6}`, or as many values of "
-        "'seed' in a sweep or an import";
+        "; an interval needs 6: `measure: {processes: 6}` where the seed is not swept, or as many "
+        "values of 'seed' in a sweep or an import";
     for (const char* claim :
          {"order: a < b", "order: b < a", "ratio: a / b, at_least: 0.5", "bound: a, at_most: 9"}) {
         const auto judge = [&](const tables::Recorded& records) {

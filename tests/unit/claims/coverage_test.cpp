@@ -608,7 +608,7 @@ Ended measure(int cases, double scatter, Random& random) {
     config::Measure measure;
     measure.lane = config::Measure::Lane::Timing;
     measure.processes = 6;
-    measure.relativeError = 0.05;
+    measure.timeBudgetS = 60.0;
     tables::FrameTimes times;
     std::vector<tables::Samples> samples(static_cast<std::size_t>(cases));
     Ended ended{false, 0, cases, 0};

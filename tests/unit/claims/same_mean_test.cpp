@@ -93,11 +93,11 @@ TEST(SameMean, IsRefusedWhereItCouldNotFail) {
               "claim 'X' is 'same_mean' and needs an image whose truth has several 'frames': "
               "{frame: 1000, frames: 6}");
     EXPECT_EQ(errorWith("{frame: 99, frames: 6}", "{frames: 1}", "1%"),
-              "claim 'X' is 'same_mean' and needs 'measure.frames', a seed each: 2 or more");
+              "claim 'X' is 'same_mean' and needs 'output.frames', a seed each: 2 or more");
     // 2 of 924 deals a row.
     EXPECT_EQ(errorWith("{frame: 99, frames: 6}", "{frames: 6}", "0.6%"),
               "claim 'X' asks for 0.6 % of false alarms over 3 rows, and could not fail: 6 frames "
-              "and 6 of the truth come to no p below 0.65 %; take more ('measure.frames', 'truth: "
+              "and 6 of the truth come to no p below 0.65 %; take more ('output.frames', 'truth: "
               "{frames}')");
 }
 

@@ -757,8 +757,8 @@ TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
     const ClaimResult few = judgeSwept(pooled, 4, 1.1, random);
     EXPECT_EQ(few.verdict, Verdict::Ambiguous);
     EXPECT_EQ(few.reason,
-              "4 seeds of random numbers; an interval needs 6: `measure: {seeds: process, "
-              "processes: 6}`, or as many values of 'seed' in a sweep or an import");
+              "4 seeds of random numbers; an interval needs 6: `measure: {processes: 6}` "
+              "where the seed is not swept, or as many values of 'seed' in a sweep or an import");
     EXPECT_EQ(judgeSwept("rows: [m, seed], columns: {{e: {{metric: e}}}}", 8, 1.1, random).verdict,
               Verdict::Ambiguous)
         << "one seed a row";

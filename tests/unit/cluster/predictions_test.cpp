@@ -41,8 +41,7 @@ TEST(Predictions, TellWhatAllProcessesTake) {
 }
 
 TEST(Predictions, FollowIterationsAndFrames) {
-    Case item = makeCase("t/1", "a", 64);
-    item.measure.warmup = 1;
+    Case item = makeCase("t/1", "a", 64, config::Measure::Lane::Timing);
     item.measure.repeats = 3;
     item.measure.frames = 1;
     const Predictor predictor({{item, {0.5, 0.25, 4.0, 1.0, 0}}});

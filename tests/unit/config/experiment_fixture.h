@@ -11,7 +11,7 @@
 namespace gfxrepro::config {
 
 inline constexpr const char* kTiming =
-    "measure: {lane: timing, warmup: 3, repeats: 10, processes: 3}\n"
+    "measure: {lane: timing, repeats: 10, processes: 3}\n"
     "profiles: {quick: {measure: {repeats: 2, processes: 1}}}\n";
 
 class ExperimentTest : public testing::Test {

@@ -213,7 +213,6 @@ TEST_F(ExperimentTest, ProfilesAreLaidOverTheWhole) {
     EXPECT_EQ(table.params.toFlowText(),
               "{reference_size: 256, light_samples: [8, 8], light_ratio: 1}");
     EXPECT_EQ(load(kTerrain, quick).measure.repeats, 2);
-    EXPECT_EQ(load(kTerrain, quick).measure.warmup, 3);
     quick.profile = "paper";
     EXPECT_EQ(load(kTerrain, quick).measure.repeats, 10);
     quick.profile = "fast";
@@ -551,25 +550,20 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
     const auto errorOf = [&](const std::string& lines) {
         return loadError("sweep_of: s\ntitle: t\ntechnique: x\n" + lines);
     };
-    EXPECT_EQ(errorOf("measure: {lane: quality, warmup: 0}\n"), "no error");
-    for (const char* key : {"relative_error: 0.01", "time_budget_s: 9", "warmup: 2"}) {
-        const std::string name = std::string(key).substr(0, std::string(key).find(':'));
-        EXPECT_EQ(errorOf(std::string("measure: {lane: quality, ") + key + "}\n"),
-                  "DIR/zju/a.yaml:4:26: '" + name +
-                      "': in the quality lane no rounds are timed; allowed: lane: timing");
-    }
-    EXPECT_EQ(errorOf("measure: {relative_error: 0.1}\n"), "no error");
+    EXPECT_EQ(errorOf("measure: {lane: quality, time_budget_s: 9}\n"),
+              "DIR/zju/a.yaml:4:26: 'time_budget_s': in the quality lane no rounds are timed; "
+              "allowed: lane: timing");
     for (const char* few : {"measure: {processes: 5,", "measure: {processes: 20,"}) {
-        EXPECT_EQ(errorOf(std::string(few) + " relative_error: 0.1}\n"),
-                  fmt::format("DIR/zju/a.yaml:4:{}: 'relative_error': no rounds follow; allowed: "
-                              "with 6 to 19 'processes'",
+        EXPECT_EQ(errorOf(std::string(few) + " time_budget_s: 9}\n"),
+                  fmt::format("DIR/zju/a.yaml:4:{}: 'time_budget_s': no rounds follow; allowed: "
+                              "with 6 to 19 'processes', or without",
                               std::string(few).size() + 2));
     }
-    EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9, lane: timing}\n"),
-              "DIR/zju/a.yaml:4:25: 'time_budget_s': all 'processes' are measured whatever they "
-              "take; allowed: without 'processes', or with 'relative_error'");
-    EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9, relative_error: 0.1}\n"),
-              "no error");
+    EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9}\n"), "no error");
+    EXPECT_EQ(
+        errorOf("measure: {warmup: 2}\n"),
+        "DIR/zju/a.yaml:4:11: measure: unknown key 'warmup'; allowed: lane, repeats, processes, "
+        "time_budget_s, time_limit_s");
     EXPECT_EQ(errorOf("printed: {at: {n: 3}}\n"),
               "DIR/zju/a.yaml:4:11: 'at': nothing is printed that could have been measured there; "
               "allowed: with 'values'");
@@ -602,10 +596,11 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
               "DIR/zju/a.yaml:4:45: when: n.m is nope; allowed: x | y");
     EXPECT_EQ(errorOf("sweep: {m: [x, y], n: [1, 2], when: {n: {m: [x, others]}}}\n"), "no error");
     // Another profile may have what the file lacks; what is extended serves others, too.
-    EXPECT_EQ(errorOf("extends: presets/timing.yaml\nmeasure: {relative_error: 0.1, processes: 6}\n"
-                      "profiles: {quick: {measure: {relative_error: 0}}}\n"),
+    EXPECT_EQ(errorOf("extends: presets/timing.yaml\nmeasure: {time_budget_s: 9, processes: 6}\n"
+                      "profiles: {quick: {measure: {time_budget_s: 0}}}\n"),
               "no error");
-    folder.write("presets/more.yaml", "scene_params: {up: z}\nmeasure: {relative_error: 0.1}\n");
+    folder.write("presets/more.yaml",
+                 "scene_params: {up: z}\nmeasure: {processes: 5, time_budget_s: 9}\n");
     EXPECT_EQ(errorOf("extends: presets/more.yaml\n"), "no error");
 }
 
@@ -615,7 +610,7 @@ TEST_F(ExperimentTest, OfAnImportNothingIsMeasured) {
     for (const char* line :
          {"scene: a", "scene_params: {up: z}", "scene_instead: {a: b}", "params: {n: 3}",
           "params_by_scene: {a: {n: 3}}", "params_instead: {n: 3}", "measure: {processes: 3}",
-          "measure: {lane: quality, warmup: 0}", "shows: [p]", "program: {command: t}"}) {
+          "measure: {lane: quality}", "shows: [p]", "program: {command: t}"}) {
         const std::string key(line, std::string(line).find(':'));
         EXPECT_EQ(loadError(head + line + '\n'),
                   "DIR/zju/a.yaml:5:1: '" + key +
@@ -648,13 +643,13 @@ TEST_F(ExperimentTest, RandomErrorsAloneAreOfSixProcesses) {
     EXPECT_EQ(measure.lane, Measure::Lane::Quality);
     EXPECT_EQ(measure.seeds, Measure::Seeds::Process);
     EXPECT_EQ(measure.processes, kFewestRounds);
-    EXPECT_EQ(load(head + layout + "measure: {seeds: case}\n").measure.processes, 1);
+    EXPECT_EQ(load(head + layout + "sweep: {seed: [1, 2]}\n").measure.processes, 1);
     EXPECT_EQ(load(head + layout + "measure: {processes: 2}\n").measure.processes, 2);
     // Without {seed} frames are its random numbers, where a truth is of others: of one seed.
     std::string frames = head + layout;
     frames.replace(frames.find("{seed} "), 7, "");
     frames.replace(frames.find("seed: 99"), 8, "frame: 99");
-    measure = load(frames + "measure: {frames: 3}\n").measure;
+    measure = load(frames + "output: {frames: 3}\n").measure;
     EXPECT_EQ(measure.seeds, Measure::Seeds::Case);
     EXPECT_EQ(measure.processes, 1);
     frames.replace(frames.find(", frame: 99"), 11, "");

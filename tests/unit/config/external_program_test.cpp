@@ -84,8 +84,7 @@ TEST(ExternalProgram, MayGiveAllFramesInOneRun) {
 }
 
 TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
-    const ExternalProgram program = programOf("command: t {seed}\nseeds: process");
-    EXPECT_TRUE(program.seedsByProcess);
+    const ExternalProgram program = programOf("command: t {seed}");
     Params params(parseYaml("{seed: 7}", "p"), "technique 't'");
     program.declare(params);
     params.finish();
@@ -94,20 +93,16 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
     programOf("command: t").declare(none);
     EXPECT_EQ(errorText([&] { none.finish(); }),
               "p:1:2: technique 't': unknown parameter 'seed'; it has none");
-    EXPECT_EQ(errorOf("command: t\nseeds: process"),
-              "c.yaml:2:1: program: seeds: the command has no {seed}");
-    EXPECT_EQ(errorOf("command: t {seed}\nseeds: repeat"),
-              "c.yaml:2:8: program: seeds is repeat; allowed: case | process");
-    // Errors against a truth of another seed or number are random; those of another word need not.
+    // A truth of another seed or number has random numbers of its own; one of another word need
+    // not.
     const std::string image = "command: t {seed} {n}\nparams: {n: 1}\nimages: {r: {file: r.png";
-    EXPECT_FALSE(programOf(image + "}}").seedsByProcess);
-    EXPECT_TRUE(programOf(image + ", truth: {n: 2, seed: 9}}}").seedsByProcess);
-    EXPECT_TRUE(programOf(image + ", truth: \"{here}/t.png\"}}").seedsByProcess);
-    EXPECT_TRUE(programOf(image + ", truth: {n: 2}}}").seedsByProcess);
-    EXPECT_FALSE(programOf("command: t {seed} {m}\nparams: {m: [a, b]}\nimages: {r: {file: r.png, "
-                           "truth: {m: b}}}")
-                     .seedsByProcess);
-    EXPECT_FALSE(programOf(image + ", truth: {n: 2, seed: 9}}}\nseeds: case").seedsByProcess);
+    EXPECT_FALSE(programOf(image + "}}").sharesSeeds);
+    EXPECT_FALSE(programOf(image + ", truth: {n: 2, seed: 9}}}").sharesSeeds);
+    EXPECT_FALSE(programOf(image + ", truth: \"{here}/t.png\"}}").sharesSeeds);
+    EXPECT_FALSE(programOf(image + ", truth: {n: 2}}}").sharesSeeds);
+    EXPECT_TRUE(programOf("command: t {seed} {m}\nparams: {m: [a, b]}\nimages: {r: {file: r.png, "
+                          "truth: {m: b}}}")
+                    .sharesSeeds);
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, "
                       "seed: 3}}}"),
               "c.yaml:3:41: program: image 'r': truth: unknown key 'seed'; allowed: frames, frame, "

@@ -245,6 +245,7 @@ const std::vector<std::pair<std::string, std::string>> kNumberPlaces = {
     {"program_metric",
      "technique: external\nprogram:\n  command: t\n"
      "  metrics: {n: {unit: m, pattern: '(.)', KEY: @}}\n"},
+    {"content", "KEY: @\n"},
     {"output", "output: {KEY: @}\n"},
     {"measure", "measure: {KEY: @}\n"},
     {"selection", "TABLE{aa: {metric: mean_brightness, KEY: @}}}\n"},

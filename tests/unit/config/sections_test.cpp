@@ -65,7 +65,7 @@ TEST_F(ExperimentTest, AProgramNeedsNoTechnique) {
 }
 
 TEST_F(ExperimentTest, WhatAPresetSaysOfThePrintNeedsNoLayout) {
-    folder.write("presets/print.yaml", "printed: {hardware: a card, at: {measure.frames: 900}}\n");
+    folder.write("presets/print.yaml", "printed: {hardware: a card, at: {output.frames: 900}}\n");
     const Experiment own =
         load("sweep_of: own\ntitle: t\ntechnique: x\nextends: [presets/print.yaml]\n");
     EXPECT_EQ(own.printed.hardware, "a card");
@@ -248,18 +248,18 @@ TEST_F(ExperimentTest, PrintedParameters) {
     const auto at = [&](const std::string& values) {
         return table + "printed: {at: " + values + "}\n";
     };
-    const Experiment read = load(at("{measure.frames: 500, output.width: 1024, depth: deep}"));
+    const Experiment read = load(at("{output.frames: 500, output.width: 1024, depth: deep}"));
     ASSERT_EQ(read.printed.at.size(), 3U);
-    EXPECT_EQ(read.printed.at[0].key(), "measure.frames");
+    EXPECT_EQ(read.printed.at[0].key(), "output.frames");
     EXPECT_EQ(read.printed.at[0].value.asInteger(), 500);
     EXPECT_EQ(read.printed.at[2].value.text(), "deep");
     EXPECT_EQ(loadError(at("500")),
               "DIR/zju/a.yaml:6:15: printed.at is 500; allowed: a map {parameter: printed value}");
     EXPECT_EQ(loadError(at("{measure.repeats: 5}")),
               "DIR/zju/a.yaml:6:16: printed.at: 'measure.repeats'; allowed: a parameter, scene, "
-              "output.width, output.height, measure.frames");
-    EXPECT_EQ(loadError(at("{measure.frames: all}")),
-              "DIR/zju/a.yaml:6:32: printed.at: measure.frames is all; allowed: a whole number, 1 "
+              "output.width, output.height, output.frames");
+    EXPECT_EQ(loadError(at("{output.frames: all}")),
+              "DIR/zju/a.yaml:6:31: printed.at: output.frames is all; allowed: a whole number, 1 "
               "… 1000000");
     EXPECT_EQ(loadError(at("{output.width: 20000}")),
               "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: 1 "

@@ -97,14 +97,14 @@ TEST(ResolveCases, RefusesKeysThatNothingReads) {
     const auto errorOf = [&](const std::string& lines) {
         return test::errorText([&] { ledger.cases(ledger.load(lines)); }, ledger.folder.path());
     };
-    EXPECT_EQ(errorOf("scene: scan\nmeasure: {lane: quality, scene_seeds: 5}\n"),
-              "DIR/t.yaml:5:39: 'scene_seeds' is 5, and no case has a generated scene");
-    EXPECT_EQ(errorOf("measure: {lane: quality, scene_seeds: 5}\n"),
-              "DIR/t.yaml:4:39: 'scene_seeds' is 5, and no case has a generated scene");
-    EXPECT_EQ(errorOf("scene: grass\nmeasure: {lane: quality, scene_seeds: 5}\n"), "no error");
-    EXPECT_EQ(errorOf("params: {static: true}\nmeasure: {frames: 10}\n"),
-              "DIR/t.yaml:5:19: 10 frames: the technique draws the same in each; allowed: 1");
-    EXPECT_EQ(errorOf("measure: {frames: 10}\n"), "no error");
+    EXPECT_EQ(errorOf("scene: scan\nscene_seeds: 5\nmeasure: {lane: quality}\n"),
+              "DIR/t.yaml:5:14: 'scene_seeds' is 5, and no case has a generated scene");
+    EXPECT_EQ(errorOf("scene_seeds: 5\nmeasure: {lane: quality}\n"),
+              "DIR/t.yaml:4:14: 'scene_seeds' is 5, and no case has a generated scene");
+    EXPECT_EQ(errorOf("scene: grass\nscene_seeds: 5\nmeasure: {lane: quality}\n"), "no error");
+    EXPECT_EQ(errorOf("params: {static: true}\noutput: {frames: 10}\n"),
+              "DIR/t.yaml:5:18: 10 frames: the technique draws the same in each; allowed: 1");
+    EXPECT_EQ(errorOf("output: {frames: 10}\n"), "no error");
     EXPECT_EQ(errorOf("scene: grass\nparams: {static: true}\n"),
               "DIR/t.yaml:4:8: scene 'grass': technique 'still' reads none as it is set here");
     EXPECT_EQ(errorOf("sweep: {static: [true, false], scene: [grass]}\n"), "no error")
@@ -152,27 +152,27 @@ TEST(Ledger, TakesValueAndUnitFromTheCases) {
 TEST(Ledger, TakesFramesFromWhatIsMeasured) {
     const Ledger ledger;
     const config::Experiment experiment = ledger.bound(
-        "measure: {frames: 7}\nassumptions:\n  measure.frames: {range: [5, 9], why: open}\n");
+        "output: {frames: 7}\nassumptions:\n  output.frames: {range: [5, 9], why: open}\n");
     const config::Assumption& frames = experiment.assumptions.front();
     EXPECT_TRUE(frames.isBound);
     EXPECT_EQ(frames.value.text(), "7");
     EXPECT_EQ(frames.unit, "frames");
     const auto errorOf = [&](const std::string& entry) {
-        return ledger.errorOf("measure: {frames: 7}\nassumptions:\n  " + entry);
+        return ledger.errorOf("output: {frames: 7}\nassumptions:\n  " + entry);
     };
-    EXPECT_EQ(errorOf("measure.frames: {range: [5, 9], why: open}\n"), "no error");
-    EXPECT_EQ(errorOf("measure.frames: {value: 7, why: open}\n"),
-              "DIR/t.yaml:6:27: assumption 'measure.frames': 'value' is filled in from the cases; "
+    EXPECT_EQ(errorOf("output.frames: {range: [5, 9], why: open}\n"), "no error");
+    EXPECT_EQ(errorOf("output.frames: {value: 7, why: open}\n"),
+              "DIR/t.yaml:6:26: assumption 'output.frames': 'value' is filled in from the cases; "
               "allowed: range, why");
-    EXPECT_EQ(errorOf("measure.frames: {range: [8, 9], why: open}\n"),
-              "DIR/t.yaml:6:27: assumption 'measure.frames': range is [8, 9]; allowed: one that "
+    EXPECT_EQ(errorOf("output.frames: {range: [8, 9], why: open}\n"),
+              "DIR/t.yaml:6:26: assumption 'output.frames': range is [8, 9]; allowed: one that "
               "holds what is measured, 7");
-    EXPECT_EQ(errorOf("measure.frames: {range: [0, 9], why: open}\n"),
-              "DIR/t.yaml:6:28: assumption 'measure.frames': range is 0; allowed: 1 "
+    EXPECT_EQ(errorOf("output.frames: {range: [0, 9], why: open}\n"),
+              "DIR/t.yaml:6:27: assumption 'output.frames': range is 0; allowed: 1 "
               "… 1000000");
-    EXPECT_EQ(errorOf("measure.frame: {why: open}\n"),
-              "DIR/t.yaml:6:3: assumption 'measure.frame' needs 'value': it is no parameter of "
-              "technique 'still'; did you mean 'measure.frames'?");
+    EXPECT_EQ(errorOf("output.frame: {why: open}\n"),
+              "DIR/t.yaml:6:3: assumption 'output.frame' needs 'value': it is no parameter of "
+              "technique 'still'; did you mean 'output.frames'?");
 }
 
 TEST(Ledger, RefusesWhatIsNotTheParameters) {
@@ -351,7 +351,7 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
                 ElementsAre(Pair("grass@8", "grass"), Pair("scan", "")));
     EXPECT_THAT(scenes(swept + "scene_instead: {grass: tree}\n"),
                 ElementsAre(Pair("tree", "grass"), Pair("scan", "")));
-    EXPECT_THAT(scenes(swept + "measure: {lane: quality, scene_seeds: 3}\n"),
+    EXPECT_THAT(scenes(swept + "scene_seeds: 3\nmeasure: {lane: quality}\n"),
                 ElementsAre(Pair("grass", ""), Pair("grass@4", "grass"), Pair("grass@5", "grass"),
                             Pair("scan", "")));
     const auto errorOf = [&](const std::string& lines) {
@@ -360,9 +360,9 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
     EXPECT_EQ(errorOf("scene: scan\nscene_instead: {grass: tree}\n"),
               "DIR/t.yaml:5:17: 'scene_instead': no case of sweep/t has the scene 'grass'");
     const std::string refused = "'scene_seeds' takes no times; allowed: 1, or with lane: quality";
-    EXPECT_EQ(errorOf("scene: grass\nmeasure: {lane: timing, scene_seeds: 5}\n"),
-              "DIR/t.yaml:5:38: " + refused);
-    EXPECT_EQ(errorOf("scene: grass\nmeasure: {scene_seeds: 5}\n"), "DIR/t.yaml:5:24: " + refused)
+    EXPECT_EQ(errorOf("scene: grass\nscene_seeds: 5\nmeasure: {lane: timing}\n"),
+              "DIR/t.yaml:5:14: " + refused);
+    EXPECT_EQ(errorOf("scene: grass\nscene_seeds: 5\n"), "DIR/t.yaml:5:14: " + refused)
         << "what nobody laid out shows times, which no other key turns off";
 }
 
@@ -464,7 +464,7 @@ TEST(Cases, TakeParametersOfTheGeneratedScene) {
 TEST(Cases, SayWhichSceneTheyTake) {
     const Ledger ledger;
     const std::vector<Case> cases =
-        ledger.cases(ledger.load("scene: grass\nmeasure: {lane: quality, scene_seeds: 2}\n"));
+        ledger.cases(ledger.load("scene: grass\nscene_seeds: 2\nmeasure: {lane: quality}\n"));
     const nlohmann::ordered_json params = cases[1].recordedParams().toJson();
     EXPECT_EQ(params.at(config::kStandsFor), "grass");
     EXPECT_EQ(params.at(config::kSceneSample), 1);

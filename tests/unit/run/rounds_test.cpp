@@ -22,7 +22,6 @@ run::Plan timedPlan() {
     for (config::Case& item : plan.cases) {
         if (item.measure.lane == Lane::Quality) continue;
         item.measure.processes = 6;
-        item.measure.relativeError = 0.05;
         item.measure.timeBudgetS = 100.0;
     }
     return plan;
@@ -171,7 +170,6 @@ TEST(Rounds, TheSixthMayTakeHalfMore) {
     run::Plan plan = timedPlan();
     for (config::Case& item : plan.cases) {
         item.measure.isWithinBudget = true;
-        item.measure.relativeError = 0.0;
     }
     const auto roundsOf = [&](int secondsEach) {
         run::Rounds own(plan, {}, {});

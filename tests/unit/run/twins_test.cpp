@@ -33,7 +33,6 @@ TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
     twin.sceneSample = 1;
     twin.params.set("size", Node::scalar("64.0"));
     // Of rounds, which the timing lane alone has.
-    twin.measure.relativeError = 0.05;
     twin.measure.timeBudgetS = 7.0;
     EXPECT_EQ(run::workKey(item), run::workKey(twin));
 }
@@ -52,14 +51,13 @@ TEST(Twins, MayDifferByWhetherTheySavePictures) {
 TEST(Twins, TheKeyIsTheHashOfATextThatLasts) {
     Case item = makeCase("t/1", "a", 64);
     item.seed = 18446744073709551615U;
-    item.measure.warmup = 1;
     item.measure.repeats = 2;
     item.measure.processes = 3;
     item.measure.frames = 4;
     item.measure.timeLimitS = 5.5;
     EXPECT_EQ(run::workKey(item),
               sha256(R"({"technique":"mock","scene":null,"params":{"method":"a","size":64.0},)"
-                     R"("output":[8.0,8.0],"measure":[1.0,2.0,3.0,4.0,5.5],)"
+                     R"("output":[8.0,8.0],"measure":[0.0,2.0,3.0,4.0,5.5],)"
                      R"("seed":"18446744073709551615"})"));
 }
 
@@ -74,7 +72,7 @@ TEST(Twins, DifferByAnythingThatIsMeasured) {
         {"width", [](Case& c) { c.outputWidthPx = 9; }},
         {"height", [](Case& c) { c.outputHeightPx = 9; }},
         {"seed", [](Case& c) { ++c.seed; }},
-        {"warm-up", [](Case& c) { ++c.measure.warmup; }},
+        {"warm-up", [](Case& c) { c.measure.lane = Lane::Timing; }},
         {"repeats", [](Case& c) { ++c.measure.repeats; }},
         {"processes", [](Case& c) { ++c.measure.processes; }},
         {"frames", [](Case& c) { ++c.measure.frames; }},
@@ -133,7 +131,7 @@ TEST(Twins, ATableOfTimesTakesThemFromOneThatIsMeasured) {
         std::vector<Case> cases = {timed("t/1", "a"), timed("t/2", "a")};
         for (Case& item : cases) {
             item.measure.processes = mayContinue ? 6 : 2;
-            item.measure.relativeError = mayContinue ? 0.05 : 0.0;
+            item.measure.timeBudgetS = mayContinue ? 60.0 : 0.0;
         }
         EXPECT_THAT(lenders(cases), IsEmpty());
         EXPECT_THAT(run::firstTwins(cases), ElementsAre(0, 1));

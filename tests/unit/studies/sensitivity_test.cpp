@@ -74,7 +74,7 @@ TEST_F(Sensitivity, VariesWhatIsBoundByTurns) {
                               assumption("method", "a", "[a, b]"),
                               assumption("view", "top", ""),
                               assumption("box", "[1,2]", "[[1, 2], [3, 4]]"),
-                              assumption("measure.frames", "5", "[5, 20]")};
+                              assumption("output.frames", "5", "[5, 20]")};
     const Variations variations = variationsOf(
         experiment,
         {caseWith(
@@ -83,13 +83,13 @@ TEST_F(Sensitivity, VariesWhatIsBoundByTurns) {
         Scenes().catalog(), 3);
     EXPECT_THAT(titles(variations),
                 ElementsAre("as configured", "bias = 0", "size = 16", "gain = 0.5", "kind = point",
-                            "output = 256", "box = [3,4]", "measure.frames = 13", "bias = 0.04",
-                            "size = 256", "gain = 1.1", "output = 384", "measure.frames = 20",
+                            "output = 256", "box = [3,4]", "output.frames = 13", "bias = 0.04",
+                            "size = 256", "gain = 1.1", "output = 384", "output.frames = 20",
                             "size = 4096", "gain = 1.7"));
     EXPECT_THAT(variations.runs[5].sets, ElementsAre("output.width=256", "output.height=256"));
     EXPECT_THAT(variations.runs[1].sets, ElementsAre("params_instead.bias=0"));
     EXPECT_THAT(variations.runs[6].sets, ElementsAre("params_instead.box=[3,4]"));
-    EXPECT_THAT(variations.runs[7].sets, ElementsAre("measure.frames=13"));
+    EXPECT_THAT(variations.runs[7].sets, ElementsAre("output.frames=13"));
     EXPECT_THAT(variations.fixed,
                 ElementsAre(Pair("place", "no parameter of the technique"),
                             Pair("method", "an axis of the table: it is varied there"),

@@ -19,11 +19,11 @@ FrameTimes timesOf(const RecordMaker& maker) {
     return times;
 }
 
-config::Measure measureOf(int processes, double relativeError = 0.0) {
+config::Measure measureOf(int processes, double timeBudgetS = 0.0) {
     config::Measure measure;
     measure.lane = config::Measure::Lane::Timing;
     measure.processes = processes;
-    measure.relativeError = relativeError;
+    measure.timeBudgetS = timeBudgetS;
     return measure;
 }
 
@@ -111,7 +111,7 @@ TEST(FrameTimes, OfAProgramTheClockIsKnown) {
         }
         for (const records::Record& record : maker.records()) times.add(record);
         EXPECT_THAT(
-            timeNotes(times, measureOf(6, 0.1)).at(0),
+            timeNotes(times, measureOf(6, 60)).at(0),
             HasSubstr(isOfProgram ? "; the time of a frame is " : "; the CPU time of a frame is "));
         return times.isKnownTo(0.1, 6);
     };
@@ -180,7 +180,7 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
     EXPECT_EQ(first({10, 11}, measureOf(2)),
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
               "about a time is decided.");
-    config::Measure own = measureOf(6);  // of who names no lane
+    config::Measure own = measureOf(6, 60);  // of who names no lane
     own.isWithinBudget = true;
     EXPECT_EQ(first({10, 11}, own),
               "Times of 2 processes: bounds are a range, no interval (which takes 6), and no claim "
@@ -189,14 +189,14 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
     EXPECT_EQ(first({9, 10, 10, 10, 10, 11}, measureOf(6)),
               "Times of 6 rounds, as many as asked for; the CPU time of a frame is known to "
               "±10 % or better.");
-    EXPECT_EQ(first({9, 9, 9, 10, 10, 10, 10, 10, 10, 10, 10, 11, 11, 11}, measureOf(6, 0.2)),
-              "Times of 14 rounds, until the times were known; the CPU time of a frame "
-              "is known "
-              "to ±10 % or better (asked for: 20 %).");
-    EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, measureOf(6, 0.05)),
+    EXPECT_EQ(
+        first({9.9, 9.9, 9.9, 10, 10, 10, 10, 10, 10, 10, 10, 10.1, 10.1, 10.1}, measureOf(6, 60)),
+        "Times of 14 rounds, until the times were known; the CPU time of a frame is known "
+        "to ±1 % or better (asked for: 5 %).");
+    EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, measureOf(6, 60)),
                 HasSubstr("as many as the time allowed"));
     EXPECT_THAT(first({9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12},
-                      measureOf(6, 0.05)),
+                      measureOf(6, 60)),
                 HasSubstr("the most that are allowed"));
     EXPECT_THAT(timeNotes(timesOf(rounds({10, 10, 10, 10, 10, 10})), measureOf(6)).at(1),
                 HasSubstr("Noise of this table: two equal cases would differ by up to 0 %, by CPU "

@@ -55,12 +55,12 @@ TEST(PrintedParameters, Differ) {
 
 TEST(PrintedParameters, FramesAreThoseOfTheProfiles) {
     const std::string frames =
-        "measure: {frames: 10}\nprofiles: {paper: {measure: {frames: 1000}}}\n";
+        "output: {frames: 10}\nprofiles: {paper: {output: {frames: 1000}}}\n";
     EXPECT_THAT(cellAt(kPrinted, kPrinted, frames).departures,
                 ElementsAre(Departure{"frames", {"10"}, {"1000"}, true}));
     const std::string repeats =
         "measure: {repeats: 1}\n"
-        "profiles: {paper: {measure: {repeats: 20, warmup: 3, processes: 6, lane: timing}}}\n";
+        "profiles: {paper: {measure: {repeats: 20, processes: 6, lane: timing}}}\n";
     EXPECT_TRUE(cellAt(kPrinted, kPrinted, repeats).isAtPrintedParameters)
         << "how often something is measured does not make it something else";
 }
@@ -78,9 +78,9 @@ TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
             .cells.at(0)
             .departures;
     };
-    EXPECT_THAT(departuresAt("light_grid: 16, output.width: 512, measure.frames: 1"), IsEmpty());
+    EXPECT_THAT(departuresAt("light_grid: 16, output.width: 512, output.frames: 1"), IsEmpty());
     EXPECT_THAT(
-        departuresAt("light_grid: 32, output.width: 640, measure.frames: 500, "
+        departuresAt("light_grid: 32, output.width: 640, output.frames: 500, "
                      "scene: models/swan"),
         ElementsAre(Departure{"scene", {"models/duck"}, {"models/swan"}},
                     Departure{"output", {"512×512"}, {"640×512"}},
@@ -91,7 +91,7 @@ TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
 TEST(PrintedParameters, ANumberOfAConfigIsTheConfigs) {
     const auto lineAt = [](const std::string& at, const std::string& assumptions) {
         std::string body = std::string(kDuck) +
-                           "measure: {frames: 3}\nprofiles: {paper: {measure: {frames: 50}}}\n" +
+                           "output: {frames: 3}\nprofiles: {paper: {output: {frames: 50}}}\n" +
                            "assumptions: {" + assumptions + "}\n";
         body.replace(body.find("values"), 0, "at: {" + at + "}, ");
         RecordMaker maker;
@@ -103,8 +103,8 @@ TEST(PrintedParameters, ANumberOfAConfigIsTheConfigs) {
     const std::string frames = "frames: {value: some, why: not said}";
     EXPECT_EQ(lineAt("", frames),
               "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (50).");
-    EXPECT_EQ(lineAt("", "measure.frames: {why: not said}"), lineAt("", frames));
-    EXPECT_EQ(lineAt("measure.frames: 60", frames),
+    EXPECT_EQ(lineAt("", "output.frames: {why: not said}"), lineAt("", frames));
+    EXPECT_EQ(lineAt("output.frames: 60", frames),
               "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (printed "
               "60).");
     EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"), lineAt("", frames));

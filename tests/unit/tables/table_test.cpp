@@ -93,7 +93,7 @@ TEST(Table, SetUpCountsWhereNoFrameHasTheSame) {
     maker.frame(1).add("cpu_time_ms", {2.0}, "preprocess");
     const Table table = buildTable(experimentFrom(R"(
 sweep: {scene: [models/duck, models/bunny]}
-measure: {frames: 2}
+output: {frames: 2}
 layout:
   rows: scene
   columns:
@@ -774,7 +774,7 @@ TEST(Table, OneSeedHasNoStandardDeviation) {
     const Cell one = cellOf(Seeds::Case);
     EXPECT_EQ(one.measured, "one seed");
     EXPECT_EQ(one.status, records::Status::Missing);
-    EXPECT_EQ(one.message, "'stddev' needs two seeds (`seeds: process`) or more");
+    EXPECT_EQ(one.message, "'stddev' needs two seeds or more");
     EXPECT_TRUE(one.values.empty());
     EXPECT_EQ(cellOf(Seeds::Process).measured, "0.25 ± 0.19");
 }
@@ -791,7 +791,7 @@ TEST(Table, StatisticsBesideTheMedianOfProcessesAreSaid) {
     }
     const Table table = buildTable(experimentFrom(R"x(
 scene: models/duck
-measure: {frames: 2}
+output: {frames: 2}
 layout:
   columns:
     frame_ms: {metric: wall_time_ms, format: "{mean:.1f}"}
@@ -907,7 +907,7 @@ TEST(Table, RateOverAPath) {
     }
     const std::string body = R"x(
 scene: s
-measure: {frames: 2}
+output: {frames: 2}
 layout:
   rows: scene
   columns: {fps: {metric: frame_rate, format: "{rate:.1f} ({mean:.1f})"}}
