@@ -507,8 +507,6 @@ std::vector<ClaimResult> evaluateClaims(const config::Experiment& experiment,
     for (const ClaimSpec& claim : experiment.claims) {
         results.push_back(evaluateWhatIsThere(claim, table, laid, context));
         results.back().restsOn = restsOn(results.back(), context);
-        const SourceLocation file{experiment.file.string(), 0, 0};  // of a plan: JSON has no lines
-        results.back().where = claim.location.file == file.file ? claim.location : file;
     }
     return results;
 }

@@ -103,8 +103,6 @@ struct ClaimResult {
         return isVerdict(verdict) && isVerdict(*known) && verdict != *known;
     }
 
-    SourceLocation where{};  // its config, with the line where that is known; not in claims.csv
-
     /// Which assumptions the verdict rests on: "bias (of 5 tried)", "none of the 5 tried", "not
     /// tried"; kRestsOnUnknown; empty where there is no verdict.
     std::string restsOn = {};

@@ -11,7 +11,6 @@
 
 #include "engine/scene/scene_reference.h"
 #include "runner/claims/claims.h"
-#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -477,7 +476,6 @@ int check(const Context& context, const Chosen& selection) {
             // What is wrong in one file says nothing of the next.
             std::fflush(stdout);
             tell("gfxrepro: {}\n", error.what());
-            annotate(error);
             code = kExitUsage;
         }
     }

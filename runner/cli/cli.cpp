@@ -14,7 +14,6 @@
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
-#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/help.h"
@@ -393,20 +392,16 @@ int run(int argc, const char* const* argv, std::span<const technique::TechniqueI
         return kExitUsage;
     } catch (const std::filesystem::filesystem_error& error) {
         tell("gfxrepro: {}\n", textOf(error));
-        annotate(Error(textOf(error)));
         return kExitUsage;
     } catch (const nlohmann::json::exception& error) {
         const std::string_view text = error.what();  // "[json.exception.NAME] TEXT"
         tell("gfxrepro: cannot read or write JSON: {}\n", text.substr(text.find("] ") + 2));
-        annotate(error);
         return kExitUsage;
     } catch (const std::bad_alloc& error) {
         tell("gfxrepro: out of memory\n");
-        annotate(error);
         return kExitUsage;
     } catch (const std::exception& error) {
         tell("gfxrepro: {}\n", error.what());
-        annotate(error);
         return dynamic_cast<const NoDeviceError*>(&error) ? kExitNoDevice : kExitUsage;
     }
 }

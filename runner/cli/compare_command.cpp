@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "engine/core/files.h"
-#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -342,26 +341,6 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     return differences;
 }
 
-/// `configs` by table, as far as they are known.
-void annotateChanges(const regression::Comparison& comparison,
-                     const std::map<std::string, std::string>& configs) {
-    const auto fileOf = [&](const std::string& table) {
-        const auto found = configs.find(table);
-        return SourceLocation{found == configs.end() ? "" : found->second, 0, 0};
-    };
-    for (const Difference& one : comparison.differences) {
-        if (!one.isAlarm()) continue;
-        const std::string text =
-            one.reason.empty() ? fmt::format("× {:.3f}", one.ratio) : one.reason;
-        annotateError(fileOf(one.key.table), one.key.title(),
-                      fmt::format("{}: {}", regression::verdictName(one.verdict), text));
-    }
-    for (const regression::SeriesStep& step : comparison.steps) {
-        if (!step.isAlarm()) continue;
-        annotateError(fileOf(step.key.table), step.key.title(), regression::stepLine(step));
-    }
-}
-
 void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) say("warning: {}\n", note);
     const std::vector<std::string> titles =
@@ -445,7 +424,6 @@ int compare(const CompareOptions& options) {
     if (!times.empty()) writeFileAtomic(folder / "benchmark.json", times);
     if (times.empty()) fs::remove(folder / "benchmark.json");  // of a comparison before
     sayAll(comparison, folder);
-    annotateChanges(comparison, newer.configs);
     return exitCodeOf(comparison, newer.failures);
 }
 

@@ -11,7 +11,6 @@
 #include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
-#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -47,7 +46,6 @@ std::string failuresText(const run::Completeness& counts) {
 int completenessCode(const run::StoredRun& run) {
     const run::Completeness counts = run::completeness(run);
     if (counts.isComplete()) return kExitOk;
-    if (areAnnotationsWanted()) annotate(run::caseResults(run));
     say("incomplete: {} not run, {} failed{}{}\n", counts.missing, counts.failed,
         counts.failed > 0 ? fmt::format(" ({})", failuresText(counts)) : "",
         counts.measured() == 0 ? "; no case has a result" : "");
@@ -124,7 +122,6 @@ int sayClaims(const std::vector<claims::ClaimResult>& claims) {
     }
     say("{}\n", claims::originSummaryLine(claims));
     sayWhatIsNotKnown(claims);
-    annotate(claims);
     const bool anyFails = std::any_of(claims.begin(), claims.end(), [](const auto& claim) {
         return claim.verdict == claims::Verdict::Fails;
     });
@@ -291,7 +288,6 @@ int conclude(const fs::path& runDir) {
     const std::size_t failing = sayFailing(results.claims);
     sayVerdicts(results.claims);
     sayWhatIsNotKnown(results.claims);
-    annotate(results.claims);
     sayPrintedCells(results.printedCells);
     if (!std::ranges::all_of(results.tables, isEmpty)) {
         say("tables: {} (CSV, Markdown, LaTeX)\n", (runDir / "tables").string());

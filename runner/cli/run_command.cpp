@@ -14,7 +14,6 @@
 #include "engine/core/hash.h"
 #include "engine/core/processors.h"
 #include "engine/gl/nvml.h"
-#include "runner/cli/annotations.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -481,7 +480,6 @@ int execute(const Context& context, const RunOptions& options, const run::Reques
         countText(outcome.voided, "with void times"), countText(outcome.failed, "failed"),
         run.directory.recordsFile().string());
     const bool isComplete = counts.isComplete() && outcome.stopReason.empty();
-    if (!isComplete && areAnnotationsWanted()) annotate(run::caseResults(stored));
     if (!results) return isComplete ? kExitOk : kExitIncomplete;
 
     const int verdict = conclude(path);

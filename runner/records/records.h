@@ -109,9 +109,8 @@ struct CaseEnd {
     std::string table;  // "zju2005/2.1"
     std::string title;  // "zju2005/2.1 scene=models/duck"
     Outcome outcome = Outcome::Measured;
-    std::string text = {};   // of the others: "crash: SIGSEGV", "not run"
-    SourceLocation where{};  // its config
-    double seconds = 0.0;    // that its processes took, together
+    std::string text = {};  // of the others: "crash: SIGSEGV", "not run"
+    double seconds = 0.0;   // that its processes took, together
 };
 
 }  // namespace gfxrepro::records

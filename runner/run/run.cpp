@@ -266,10 +266,6 @@ records::CaseEnd resultOf(const Case& item, const records::Record* row) {
 std::vector<records::CaseEnd> caseResults(const StoredRun& run, const fs::path& runDir) {
     using Ended = records::CaseEnd::Outcome;
     const WorstRows worst = worstRows(run.records);
-    std::map<std::string, SourceLocation> files;
-    for (const config::Experiment& experiment : run.plan.experiments) {
-        files[experiment.id] = {experiment.file.string(), 0, 0};
-    }
     // Of the processes of a case what failed weighs most, then what was left out.
     const auto weight = [](const records::CaseEnd& result) {
         return result.outcome == Ended::Failed ? 2 : result.outcome == Ended::Skipped ? 1 : 0;
@@ -280,7 +276,6 @@ std::vector<records::CaseEnd> caseResults(const StoredRun& run, const fs::path& 
         const Case& item = *unit.item;
         const auto found = worst.find({item.id, unit.process});
         records::CaseEnd result = resultOf(item, found == worst.end() ? nullptr : found->second);
-        result.where = files[item.experiment];
         const auto [known, isNew] = results.try_emplace(item.id, result);
         if (isNew) order.push_back(item.id);
         if (weight(result) > weight(known->second)) known->second = std::move(result);
