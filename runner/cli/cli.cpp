@@ -135,7 +135,6 @@ void addQueries(CLI::App& app, const Context& context, Options& o) {
                           "documents");
     describeApp->add_flag("--markdown", o.describe.asMarkdown,
                           "the keys of all kinds of files, as tables");
-    describeApp->add_flag("--json", o.describe.asJson, "machine-readable");
     describeApp->add_flag("--merged", o.describe.isMerged,
                           "the whole config of a table, with all that it extends, as one file");
     addAssets(describeApp, o.describe.assets);

@@ -85,7 +85,6 @@ struct DescribeOptions {
     std::string name;
     bool asJsonSchema = false;
     bool asMarkdown = false;
-    bool asJson = false;
     bool isMerged = false;
     std::string assets;
 };

@@ -4,13 +4,10 @@
 #include <filesystem>
 #include <functional>
 #include <map>
-#include <set>
-#include <span>
 
 #include "engine/core/text.h"
 #include "runner/cli/experiments.h"
 #include "runner/cli/help.h"
-#include "runner/config/external_program.h"
 
 namespace gfxrepro::cli {
 
@@ -25,7 +22,6 @@ struct Typed {
     const CLI::App* command;
     const CLI::Option* pending = nullptr;  // the option whose value comes next
     Words arguments = {};                  // positionals that are complete
-    std::string key = {};                  // of KEY=VALUE, where the shell took it apart
 };
 
 const CLI::Option* findOption(const CLI::App& command, const std::string& word) {
@@ -49,25 +45,16 @@ bool isEqualsSign(const std::string& word) {
     return word == "=";
 }
 
-/// Whether its value is KEY=VALUE, or AXIS=A,B.
-bool isPair(const CLI::Option& option) {
-    return valueName(option).find('=') != std::string::npos;
-}
-
 Typed readTyped(const CLI::App& app, const Words& words) {
     Typed typed{&app};
     const CLI::Option* lastValued = nullptr;
     for (std::size_t i = 0; i + 1 < words.size(); ++i) {
         const std::string& word = words[i];
-        if (isEqualsSign(word)) {
-            if (lastValued) {  // what stood before the sign was not the whole value
-                typed.pending = lastValued;
-                typed.key = words[i - 1];
-            }
+        if (isEqualsSign(word)) {  // what stood before the sign was not the whole value
+            if (lastValued) typed.pending = lastValued;
             continue;
         }
-        lastValued = typed.pending && isPair(*typed.pending) ? typed.pending : nullptr;
-        typed.key.clear();
+        lastValued = typed.pending;
         if (typed.pending) {
             typed.pending = nullptr;
         } else if (word.starts_with("-")) {
@@ -181,68 +168,6 @@ Words valuesOf(const std::string& kind, const Context& context, const std::strin
     return found == known.end() ? Words{} : found->second();
 }
 
-/// What pairs may name.
-struct PairNames {
-    std::vector<KeyInfo> params;
-    std::vector<config::MetricInfo> metrics;
-
-    void add(std::span<const KeyInfo> more, const config::Outputs& outputs) {
-        params.insert(params.end(), more.begin(), more.end());
-        metrics.insert(metrics.end(), outputs.metrics.begin(), outputs.metrics.end());
-    }
-};
-
-/// Of the techniques and programs of the tables that are typed already; of all techniques where
-/// there are none.
-PairNames pairNamesOf(const Words& tables, const Context& context) {
-    PairNames found;
-    std::set<std::string> techniques;
-    try {
-        run::Request request;
-        if (!tables.empty()) request.configs = findPaperConfigs(tables);
-        for (const config::Experiment& experiment : loadExperiments(request, "full")) {
-            techniques.insert(experiment.technique);
-            const Node& node = config::programOf(experiment);
-            if (node.isNull()) continue;
-            const config::ExternalProgram program = config::readProgram(node);
-            for (const config::ProgramParam& param : program.params) {
-                KeyInfo& info = found.params.emplace_back();
-                info.name = param.name;
-                info.choices = param.choices;
-            }
-            found.add({}, program.outputs);
-        }
-    } catch (const Error&) {  // half a name, or a config with a mistake: the command will say it
-    }
-    for (const technique::TechniqueInfo& info : context.techniques) {
-        if (!techniques.empty() && !techniques.contains(std::string(info.name))) continue;
-        found.add(paramsOf(info), technique::outputsOf(info));
-    }
-    return found;
-}
-
-/// The keys before the sign, and after it what is known of their values: a parameter's choices, or
-/// a technique's metrics.
-Words pairs(const Typed& typed, const Context& context, const std::string& prefix) {
-    constexpr const char* kMetricKey = "layout.cell.metric";
-    const std::size_t sign = prefix.find('=');
-    const std::string key = typed.key.empty() ? prefix.substr(0, sign) : typed.key;
-    const bool isValue = !typed.key.empty() || sign != std::string::npos;
-    const std::string before = typed.key.empty() && isValue ? key + "=" : "";
-    const PairNames names = pairNamesOf(typed.arguments, context);
-    Words words;
-    for (const KeyInfo& param : names.params) {
-        if (!isValue) words.push_back(param.name + "=");
-        if (!isValue || key != param.name) continue;
-        for (const std::string& choice : param.choices) words.push_back(before + choice);
-    }
-    for (const config::MetricInfo& metric : names.metrics) {
-        if (isValue && key == kMetricKey) words.push_back(before + metric.name);
-    }
-    if (!isValue) words.push_back(std::string(kMetricKey) + "=");
-    return words;
-}
-
 /// The argument at `index`, or the last one where it takes several.
 const CLI::Option* argumentAt(const CLI::App& command, std::size_t index) {
     const CLI::Option* last = nullptr;
@@ -256,7 +181,6 @@ const CLI::Option* argumentAt(const CLI::App& command, std::size_t index) {
 }
 
 Words candidates(const Typed& typed, const Context& context, const std::string& prefix) {
-    if (typed.pending && isPair(*typed.pending)) return pairs(typed, context, prefix);
     if (typed.pending) return valuesOf(valueName(*typed.pending), context, prefix);
     if (prefix.starts_with("-")) return optionNames(*typed.command);
     const Words names = commandNames(*typed.command);

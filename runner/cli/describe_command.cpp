@@ -84,7 +84,8 @@ void printOutputs(const config::Outputs& outputs) {
     fmt::print("\nmetrics\n");
     printMetrics(outputs.metrics);
     if (outputs.areRandom) {
-        fmt::print("  of random numbers: each process draws others (`measure: {{processes: 6}}`)\n");
+        fmt::print(
+            "  of random numbers: each process draws others (`measure: {{processes: 6}}`)\n");
     }
     fmt::print("\npasses: what times are of, and what tells values of a metric apart\n");
     for (const config::PassInfo& info : outputs.passes) {
@@ -200,118 +201,6 @@ void describeExperiment(const Context& context, const config::Experiment& experi
                     technique::findTechnique(context.techniques, experiment.technique, {}));
 }
 
-Json jsonOf(const ParamInfos& params) {
-    Json list = Json::array();
-    for (const KeyInfo& info : params) {
-        Json param = {{"name", info.name}, {"default", info.absent}};
-        if (!info.allowed().empty()) param["range"] = info.allowed();
-        if (!info.choices.empty()) param["choices"] = info.choices;
-        if (!info.unit.empty()) param["unit"] = info.unit;
-        param["doc"] = info.doc;
-        list.push_back(std::move(param));
-    }
-    return list;
-}
-
-Json jsonOf(std::span<const config::MetricInfo> metrics) {
-    Json list = Json::array();
-    for (const config::MetricInfo& info : metrics) {
-        list.push_back({{"name", info.name},
-                        {"unit", info.unit},
-                        {"better", config::betterText(info.better)},
-                        {"doc", info.doc}});
-    }
-    return list;
-}
-
-Json jsonOf(std::span<const config::PassInfo> passes) {
-    Json list = Json::array();
-    for (const config::PassInfo& pass : passes) {
-        list.push_back({{"name", pass.name}, {"doc", pass.doc}});
-    }
-    return list;
-}
-
-Json jsonOf(const technique::TechniqueInfo& info) {
-    const config::Outputs outputs = info.outputs();
-    return {{"technique", info.name},
-            {"doc", info.summary},
-            {"parameters", jsonOf(paramsOf(info))},
-            {"metrics", jsonOf(outputs.metrics)},
-            {"passes", jsonOf(outputs.passes)},
-            {"metrics_of_every_technique", jsonOf(technique::commonMetrics())}};
-}
-
-Json jsonOf(const scene::GeneratorInfo& info) {
-    return {{"generator", info.name},
-            {"doc", info.summary},
-            {"parameters", jsonOf(scene::declaredParams(info, {}))}};
-}
-
-Json jsonOf(const scene::SceneEntry& entry, const scene::Catalog& catalog) {
-    Json sources = Json::array();
-    for (const scene::SceneSource& source : entry.sources) {
-        Json json = {{"kind", scene::kindName(source.kind)}};
-        if (source.file.empty()) {
-            json["generator"] = source.generator->name;
-            json["seed"] = source.seed;
-        } else {
-            json["file"] = (catalog.assetsFolder() / source.file).string();
-            json["is_there"] = std::filesystem::exists(catalog.assetsFolder() / source.file);
-        }
-        sources.push_back(std::move(json));
-    }
-    return {{"scene", entry.name},
-            {"doc", entry.doc},
-            {"canonical", entry.canonical},
-            {"sources", std::move(sources)}};
-}
-
-Json jsonOf(const config::ExternalProgram& program) {
-    Params params(Node::map({}), "program");
-    program.declare(params);
-    Json files = Json::array();
-    for (const config::ProgramFile& file :
-         config::filesOf(program, program.valuesOf(params.resolved()))) {
-        files.push_back({{"file", file.name}, {"path", file.path.string()}});
-    }
-    Json images = Json::array();
-    for (const config::ProgramPicture& picture : program.pictures) {
-        images.push_back(
-            {{"name", picture.name}, {"file", picture.file}, {"has_truth", picture.hasTruth()}});
-    }
-    return {{"command", program.command},
-            {"files", std::move(files)},
-            {"parameters", jsonOf(params.declared())},
-            {"metrics", jsonOf(program.outputs.metrics)},
-            {"passes", jsonOf(program.outputs.passes)},
-            {"images", std::move(images)}};
-}
-
-Json jsonOf(const config::Experiment& experiment) {
-    Json claims = Json::array();
-    for (const config::ClaimSpec& claim : experiment.claims) {
-        claims.push_back({{"id", claim.id}, {"says", claim.text}});
-    }
-    Json assumptions = Json::array();
-    for (const config::Assumption& assumption : experiment.assumptions) {
-        assumptions.push_back({{"name", assumption.name}, {"why", assumption.why}});
-    }
-    Json json = {{"experiment", experiment.id},
-                 {"label", experiment.label()},
-                 {"title", experiment.title},
-                 {"file", experiment.file.string()},
-                 {"technique", experiment.technique},
-                 {"cases", config::expandCases(experiment).size()},
-                 {"profiles", experiment.profiles},
-                 {"claims", std::move(claims)},
-                 {"assumptions", std::move(assumptions)}};
-    if (const Node& program = config::programOf(experiment); !program.isNull()) {
-        json["program"] = jsonOf(config::readProgram(program));
-    }
-    return json;
-}
-
 template <class Infos>
 auto findNamed(const Infos& infos, const std::string& name) {
     return std::find_if(infos.begin(), infos.end(),
@@ -400,11 +289,6 @@ std::string mergedYaml(const std::filesystem::path& file) {
                        yamlBelow(config::wholeDocument(file, dataFolder("configs")), 0));
 }
 
-int sayJson(const Json& json) {
-    fmt::print("{}\n", json.dump(2));
-    return kExitOk;
-}
-
 /// Whether there is such a table or file; else adds the names of those that there are.
 bool describeTable(const Context& context, const DescribeOptions& options,
                    std::vector<std::string>& known) {
@@ -418,8 +302,6 @@ bool describeTable(const Context& context, const DescribeOptions& options,
         if (experiment.id != options.name && !isYamlFile(options.name)) continue;
         if (options.isMerged) {
             fmt::print("{}", mergedYaml(experiment.file));
-        } else if (options.asJson) {
-            sayJson(jsonOf(experiment));
         } else {
             describeExperiment(context, experiment);
         }
@@ -432,9 +314,6 @@ bool describeTable(const Context& context, const DescribeOptions& options,
 
 int describe(const Context& context, const DescribeOptions& options) {
     const std::string& name = options.name;
-    if (options.asJson && (options.asJsonSchema || options.asMarkdown || name == "config")) {
-        throw UsageError("describe: --json is for techniques, generators, scenes and tables");
-    }
     if (describeSchema(context, options)) return kExitOk;
     if (name.empty()) throw UsageError("describe: say what; see 'gfxrepro describe --help'");
     std::vector<std::string> known = {"config"};
@@ -445,20 +324,17 @@ int describe(const Context& context, const DescribeOptions& options) {
     }
     const auto technique = findNamed(context.techniques, name);
     if (technique != context.techniques.end()) {
-        if (options.asJson) return sayJson(jsonOf(*technique));
         describeTechnique(*technique);
         return kExitOk;
     }
     const auto generator = findNamed(context.generators, name);
     if (generator != context.generators.end()) {
-        if (options.asJson) return sayJson(jsonOf(*generator));
         describeGenerator(*generator);
         return kExitOk;
     }
     const scene::Catalog catalog = openCatalog(context, options.assets);
     const auto entry = catalog.entries().find(name);
     if (entry != catalog.entries().end()) {
-        if (options.asJson) return sayJson(jsonOf(entry->second, catalog));
         describeScene(entry->second, catalog);
         return kExitOk;
     }

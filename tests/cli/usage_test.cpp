@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -294,38 +295,22 @@ TEST_F(Usage, MetricsSayInWordsOfTheirOwnWhatTheyAre) {
     for (const char* technique :
          {"voxelization", "point_splatting", "shadow_mapping", "depth_sampling", "soft_shadows",
           "clustered_reflections", "reflection_reuse", "terrain_tessellation"}) {
-        const auto json = nlohmann::json::parse(gfxrepro({"describe", technique, "--json"}).out);
-        for (const char* list : {"metrics", "metrics_of_every_technique"}) {
-            for (const auto& metric : json.at(list)) {
-                const auto doc = metric.at("doc").get<std::string>();
-                for (const char* begin : {"of the ", "of a ", "that ", "whose ", "likewise",
-                                          "with ", "within ", "less ", "a frame,", "a pass"}) {
-                    EXPECT_FALSE(doc.starts_with(begin))
-                        << technique << ' ' << metric.at("name") << ": " << doc;
-                }
+        std::string text = gfxrepro({"describe", technique}).out;
+        text.erase(text.find("\npasses"), text.find("\nmetrics of every") - text.find("\npasses"));
+        text.erase(0, text.find("\nmetrics\n"));
+        static const std::regex kMetric("\n  (\\w+)\\s+([^\n]+)");
+        int count = 0;
+        for (std::sregex_iterator metric(text.begin(), text.end(), kMetric), end; metric != end;
+             ++metric, ++count) {
+            const std::string doc = (*metric)[2];
+            for (const char* begin : {"of the ", "of a ", "that ", "whose ", "likewise", "with ",
+                                      "within ", "less ", "a frame,", "a pass"}) {
+                EXPECT_FALSE(doc.starts_with(begin))
+                    << technique << ' ' << (*metric)[1] << ": " << doc;
             }
         }
+        EXPECT_GT(count, 20) << text;
     }
-}
-
-TEST_F(Usage, DescribesForProgramsToo) {
-    const auto described = [](const char* name) {
-        return nlohmann::json::parse(gfxrepro({"describe", name, "--json"}).out);
-    };
-    const auto technique = described("voxelization");
-    const auto namesOf = [](const nlohmann::json& list) {
-        std::set<std::string> names;
-        for (const auto& item : list) names.insert(item.at("name").get<std::string>());
-        return names;
-    };
-    EXPECT_THAT(namesOf(technique.at("parameters")), testing::IsSupersetOf({"resolution", "rule"}));
-    EXPECT_THAT(namesOf(technique.at("metrics")), testing::Contains("voxels"));
-    EXPECT_FALSE(technique.at("passes").empty());
-    EXPECT_EQ(described("models/duck").at("sources")[0].at("kind"), "stand-in");
-    EXPECT_EQ(described("sdf_model").at("generator"), "sdf_model");
-    EXPECT_EQ(described("zju2005/2.1").at("label"), "Table 2.1");
-    EXPECT_EQ(gfxrepro({"describe", "config", "--json"}).err,
-              "gfxrepro: describe: --json is for techniques, generators, scenes and tables\n");
 }
 
 TEST_F(Usage, HelpAndVersionAreCommandsToo) {
