@@ -165,7 +165,6 @@ struct ExportOptions {
 /// Numbers that were measured elsewhere.
 struct ImportOptions {
     std::string file;
-    std::string cases;                 // file that says what `case_id` is; empty: none
     std::vector<std::string> metrics;  // "COLUMN=UNIT": columns of numbers
     std::vector<std::string> configs;  // how they are shown, and what must follow
     std::string profile = "full";

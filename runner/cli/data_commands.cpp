@@ -50,11 +50,7 @@ void addImport(CLI::App& app, const Context& context, ImportOptions& o,
         ->add_option("--metric", o.metrics, "a column of numbers, in place of metric and value")
         ->allow_extra_args(false)
         ->option_text("COLUMN=UNIT");
-    importApp->add_option("--cases", o.cases, "CSV with the parameters of each case_id")
-        ->option_text("FILE");
-    importApp
-        ->add_option("--machine", o.machine,
-                     "what measured them, in words (default: as in the run.csv beside --cases)")
+    importApp->add_option("--machine", o.machine, "what measured them, in words")
         ->option_text("TEXT");
     importApp->add_flag("--gpu", o.isOfGpu, "a GPU measured them: judge claims about GPUs, too");
     addProfile(importApp, o.profile, "profile of the configs");
@@ -115,25 +111,17 @@ std::pair<std::string, std::string> metricFrom(const std::string& text) {
 
 int importRun(const Context& context, const ImportOptions& options) {
     outcome::ImportRequest request;
-    request.files = {options.file, options.cases, {}};
+    request.files = {options.file, {}};
     for (const std::string& metric : options.metrics) {
         request.files.metrics.push_back(metricFrom(metric));
     }
     request.profile = options.profile;
     request.isOfGpu = options.isOfGpu;
-    if (!options.machine.empty()) {
-        request.machine = options.machine;
-    } else if (!options.cases.empty()) {  // perhaps exported: then it is known what measured it
-        const auto known = outcome::exportedRun(fs::path(options.cases).parent_path());
-        if (known.contains("machine")) request.machine = known.at("machine");
-        request.isOfGpu |= known.contains("device_class") && known.at("device_class") == "gpu";
-    }
+    if (!options.machine.empty()) request.machine = options.machine;
     const bool isLine = std::ranges::none_of(request.machine,
                                              [](unsigned char c) { return c < 0x20 || c == 0x7F; });
     if (!isLine || !isUtf8(request.machine)) {
-        throw Error(
-            "the machine's name (--machine, or run.csv beside the cases): allowed: text of "
-            "one line, in UTF-8");
+        throw Error("the machine's name (--machine): allowed: text of one line, in UTF-8");
     }
     request.commandLine = context.commandLine;
     if (!options.configs.empty()) {

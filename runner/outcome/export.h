@@ -21,16 +21,11 @@ namespace gfxrepro::outcome {
 void writeArtifact(const std::filesystem::path& runDir, const run::StoredRun& run,
                    const scene::Catalog& catalog, const std::filesystem::path& target);
 
-/// By the plan; a budget of time may have ended them before.
-inline constexpr std::string_view kProcessesAsked = "processes_asked";
 /// The columns of cases.csv before the parameters. None is a word of SQL.
 inline constexpr std::string_view kCaseColumns[] = {
-    "case_id", "experiment", "technique", "scene", "lane", "run_seed", "seeds", kProcessesAsked};
+    "case_id", "experiment", "technique", "scene", "lane", "run_seed", "seeds", "processes_asked"};
 /// Begins the column of a parameter that has the name of one of these.
 inline constexpr std::string_view kParamPrefix = "params.";
-
-/// As `measure.seeds` has them; empty of none.
-std::string_view seedsName(config::Measure::Seeds seeds);
 
 /// A case a row: kCaseColumns, then a column for each parameter of any case, empty where a case has
 /// not got it. What has parts is a column a part: "output.width", "offset.0".
@@ -42,8 +37,4 @@ void writeCases(const std::filesystem::path& file, std::span<const config::Case>
 /// measured from outside; not written where there are none).
 void writeTidy(const std::filesystem::path& runDir, const run::StoredRun& run,
                const std::filesystem::path& target);
-
-/// The entries of run.csv in such a folder, by key; none where there is no such file.
-std::map<std::string, std::string> exportedRun(const std::filesystem::path& folder);
-
 }  // namespace gfxrepro::outcome

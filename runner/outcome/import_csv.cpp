@@ -27,7 +27,6 @@ using Names = std::vector<std::string>;
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{1} << 30;
 constexpr std::size_t kMostCellBytes = 1024;
-constexpr const char* kCaseId = "case_id";
 constexpr const char* kMessage = "message";
 constexpr const char* kSeed = "seed";
 constexpr std::string_view kLongColumns[] = {"metric", "value", "unit"};
@@ -60,9 +59,8 @@ std::string textOf(const fs::path& file) {
 /// Rows by the names of their columns.
 class NamedCsv {
   public:
-    /// `hasLines`: its cells may have several lines, as a parameter of an exported run may.
-    explicit NamedCsv(const fs::path& file, bool hasLines = false)
-        : name_(file.string()), text_(textOf(file)), reader_(text_, name_), hasLines_(hasLines) {
+    explicit NamedCsv(const fs::path& file)
+        : name_(file.string()), text_(textOf(file)), reader_(text_, name_) {
         if (!reader_.next(header_)) throw Error({name_, 1, 0}, "is empty; expected a header");
         for (std::size_t i = 0; i < header_.size(); ++i) {
             std::string& column = header_[i];
@@ -114,8 +112,7 @@ class NamedCsv {
     /// What a program said may have anything in it.
     void requireText(const std::string& text, const std::string& what, bool isMessage) const {
         const auto isControl = [&](char c) {
-            const bool isOfLines = hasLines_ && (c == '\n' || c == '\t' || c == '\r');
-            return c == '\0' || (!isMessage && !isOfLines && static_cast<unsigned char>(c) < 0x20);
+            return c == '\0' || (!isMessage && static_cast<unsigned char>(c) < 0x20);
         };
         if (!isMessage && text.size() > kMostCellBytes) {
             throw Error(where(), fmt::format("{}: {} bytes; at most {} are allowed", what,
@@ -123,14 +120,13 @@ class NamedCsv {
         }
         if (std::ranges::any_of(text, isControl)) {
             throw Error(where(), what + ": a control character; allowed: text" +
-                                     (isMessage || hasLines_ ? "" : " of one line"));
+                                     (isMessage ? "" : " of one line"));
         }
         if (!isUtf8(text)) throw Error(where(), what + ": is not UTF-8");
     }
 
     std::string name_, text_;
     records::CsvReader reader_;
-    bool hasLines_;
     Names header_, fields_;
     std::map<std::string, std::size_t> places_;
 };
@@ -268,15 +264,10 @@ Names caseColumns(const NamedCsv& csv, const ImportFiles& files) {
                                                  "the two forms",
                                                  name));
         }
-        if (name == kCaseId) {
-            if (!files.cases.empty()) continue;
-            throw Error(csv.where(),
-                        "column 'case_id' without --cases FILE, which says what the cases are");
-        }
-        if (!files.cases.empty()) {
-            throw Error(csv.where(), fmt::format("column '{}' beside case_id; what a case is "
-                                                 "stands in {}",
-                                                 name, files.cases.string()));
+        if (name == "case_id" || name == "stands_for" || name == "scene_sample") {
+            throw Error(csv.where(), fmt::format("column '{}' says nothing of a case here; "
+                                                 "allowed: columns of its parameters",
+                                                 name));
         }
         columns.push_back(name);
     }
@@ -306,34 +297,12 @@ ImportedCase caseOf(const NamedCsv& csv, const Names& columns) {
     return item;
 }
 
-/// The cases by their id.
-std::map<std::string, std::size_t> readCases(const fs::path& file, ImportedNumbers& numbers) {
-    NamedCsv csv(file, true);
-    csv.require(kCaseId, kCaseId);
-    for (const std::string& name : csv.header()) {
-        if (name != kCaseId) numbers.columns.push_back(name);
-    }
-    requireNoParts(csv, numbers.columns);
-    std::map<std::string, std::size_t> places;
-    while (csv.next()) {
-        const std::string id = csv.cell(kCaseId);
-        const auto [known, isNew] = places.try_emplace(id, numbers.cases.size());
-        if (!isNew) {
-            throw Error(csv.where(), fmt::format("column 'case_id': '{}' stands in line {} already",
-                                                 id, numbers.cases[known->second].where.line));
-        }
-        numbers.cases.push_back(caseOf(csv, numbers.columns));
-    }
-    return places;
-}
-
 void requireColumns(const NamedCsv& csv, const ImportFiles& files) {
     for (const auto& [column, unit] : files.metrics) csv.require(column, "what --metric names");
     if (files.metrics.empty()) {
         csv.require("metric", "metric, value; or --metric COLUMN=UNIT for each column of numbers");
         csv.require("value", "metric, value");
     }
-    if (!files.cases.empty()) csv.require(kCaseId, "case_id, as --cases is given");
     if (!files.isSeedSwept && csv.has(kSeed) && csv.has("process")) {
         throw Error(csv.where(),
                     "columns 'seed' and 'process': a seed is of a process of its own; allowed: one "
@@ -418,25 +387,18 @@ std::string ImportedCase::cell(std::string_view column) const {
 ImportedNumbers readImport(const ImportFiles& files) {
     ImportedNumbers numbers;
     std::map<std::string, std::size_t> places;
-    if (!files.cases.empty()) places = readCases(files.cases, numbers);
     NamedCsv csv(files.file);
     requireColumns(csv, files);
-    const Names columns = caseColumns(csv, files);
-    requireNoParts(csv, columns);
-    if (files.cases.empty()) numbers.columns = columns;
+    numbers.columns = caseColumns(csv, files);
+    requireNoParts(csv, numbers.columns);
     Rows rows(files);
     std::map<std::string, int> seeds;  // in the order of the file
     while (csv.next()) {
-        std::string key = csv.cell(kCaseId);
-        if (files.cases.empty()) {
-            for (const std::string& column : columns) key += csv.cell(column) + '\x1f';
-            const auto [place, isNew] = places.try_emplace(key, numbers.cases.size());
-            if (isNew) numbers.cases.push_back(caseOf(csv, columns));
-        } else if (!places.contains(key)) {
-            throw Error(csv.where(), fmt::format("column 'case_id': '{}' is not in {}", key,
-                                                 files.cases.string()));
-        }
-        const std::size_t place = places.at(key);
+        std::string key;
+        for (const std::string& column : numbers.columns) key += csv.cell(column) + '\x1f';
+        const auto [known, isNew] = places.try_emplace(key, numbers.cases.size());
+        if (isNew) numbers.cases.push_back(caseOf(csv, numbers.columns));
+        const std::size_t place = known->second;
         Record record = recordOf(csv);
         if (const std::string seed = csv.cell(kSeed); !files.isSeedSwept && !seed.empty()) {
             record.process = seeds.try_emplace(seed, static_cast<int>(seeds.size())).first->second;

@@ -17,11 +17,9 @@ namespace gfxrepro::outcome {
 /// the `seed` of random numbers (without column `frame` a number that has none beside others that
 /// have, and is no time, is the set-up's); every other column is a parameter of the case, or
 /// `experiment`, `technique`, `scene`. With `metrics` it has a column for each of these instead of
-/// `metric`, `value` and `unit`. With `cases` it has `case_id`, and what a case is stands in that
-/// file (as `gfxrepro export --tidy` writes both).
+/// `metric`, `value` and `unit`.
 struct ImportFiles {
     std::filesystem::path file;
-    std::filesystem::path cases = {};                               // empty: none
     std::vector<std::pair<std::string, std::string>> metrics = {};  // column, unit
     bool isSeedSwept = false;    // `seed` is an axis of the config, and so a parameter
     bool isSeedLeftOut = false;  // of some cases, by `when` of its sweep
@@ -53,7 +51,7 @@ struct ImportedNumbers {
 
 /// Throws Error with file and line, what was found and what is allowed: for a column that is
 /// missing, there twice or of no use, a row of another length, a number that is none, a unit that
-/// changes, a value that is there twice, a case that is not known, and text that is not UTF-8.
+/// changes, a value that is there twice, and text that is not UTF-8.
 ImportedNumbers readImport(const ImportFiles& files);
 
 }  // namespace gfxrepro::outcome

@@ -56,56 +56,10 @@ Node valueOf(const std::string& text, const SourceLocation& where) {
     return number ? Node::number(*number, where) : node;
 }
 
-/// Maps whose keys are 0, 1, … are lists.
-Node withLists(const Node& node) {
-    if (!node.isMap()) return node;
-    Node::Sequence items;
-    Node map = Node::map({});
-    bool isList = !node.entries().empty();
-    for (const auto& [key, value] : node.entries()) {
-        isList = isList && key == std::to_string(items.size());
-        items.push_back(withLists(value));
-        map.set(key, items.back());
-    }
-    return isList ? Node::sequence(std::move(items)) : map;
-}
-
 int outputSize(const ImportedCase& given, const std::string& column, int absent) {
     const std::string text = given.cell(column);
     if (text.empty()) return absent;
     return static_cast<int>(numberIn(Node::scalar(text, given.where), config::kOutputSizesPx,
-                                     fmt::format("column '{}'", column)));
-}
-
-std::optional<int> sampleOf(const ImportedCase& given) {
-    const std::string text = given.cell(config::kSceneSample);
-    if (text.empty()) return std::nullopt;
-    const auto sample = parseInteger(text);
-    if (sample && *sample >= 0 && *sample <= config::kMostSceneSample) {
-        return static_cast<int>(*sample);
-    }
-    throw Error(given.where, fmt::format("column '{}': '{}'; allowed: a whole number from 0 to {}",
-                                         config::kSceneSample, text, config::kMostSceneSample));
-}
-
-/// Of an exported run.
-config::Measure::Seeds seedsOf(const ImportedCase& given) {
-    using Seeds = config::Measure::Seeds;
-    const std::string text = given.cell("seeds");
-    for (const Seeds seeds : {Seeds::None, Seeds::Case, Seeds::Process}) {
-        if (seedsName(seeds) == text) return seeds;
-    }
-    throw Error(given.where,
-                fmt::format("column 'seeds': '{}'; allowed: case, process, or nothing", text));
-}
-
-/// Of an exported run, which may have ended before as many were measured.
-int processesAskedOf(const ImportedCase& given) {
-    const std::string column(kProcessesAsked);
-    const std::string text = given.cell(column);
-    if (text.empty()) return 1;
-    return static_cast<int>(numberIn(Node::scalar(text, given.where),
-                                     {.least = 1, .most = records::kMostProcesses, .isWhole = true},
                                      fmt::format("column '{}'", column)));
 }
 
@@ -119,10 +73,9 @@ void requireKnownOutput(const std::string& name, const ImportedCase& given) {
 /// The name of the parameter in that column; empty where it holds something else of the case.
 std::string paramOf(const std::string& column) {
     if (column.starts_with(kParamPrefix)) return column.substr(kParamPrefix.size());
-    const bool isOther = std::ranges::find(kCaseColumns, column) != std::end(kCaseColumns) ||
-                         column == kOutputWidth || column == kOutputHeight ||
-                         column == config::kStandsFor || column == config::kSceneSample;
-    return isOther ? "" : column;
+    constexpr std::string_view kOthers[] = {"experiment", "technique", "scene", kOutputWidth,
+                                            kOutputHeight};
+    return std::ranges::find(kOthers, column) != std::end(kOthers) ? "" : column;
 }
 
 config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
@@ -143,22 +96,18 @@ config::Case caseFrom(const ImportedCase& given, const Experiment& experiment) {
             params.setPath(name, value);
         }
     }
-    item.params = withLists(params);
+    item.params = std::move(params);
     item.given = item.params;
     item.axes = Node::map({});
     if (const std::string scene = given.cell("scene"); !scene.empty()) {
         item.scene = Node::scalar(scene, {}, true);
     }
-    if (const std::string name = given.cell(config::kStandsFor); !name.empty()) {
-        item.standsFor = Node::scalar(name, {}, true);
-    }
-    item.sceneSample = sampleOf(given);
     item.outputWidthPx = outputSize(given, kOutputWidth, experiment.outputWidthPx);
     item.outputHeightPx = outputSize(given, kOutputHeight, experiment.outputHeightPx);
     item.measure = experiment.measure;
-    item.measure.processes = processesAskedOf(given);
-    item.measure.isWithinBudget = item.measure.processes > 1;
-    item.measure.seeds = given.hasSeeds ? config::Measure::Seeds::Process : seedsOf(given);
+    item.measure.processes = 1;
+    using Seeds = config::Measure::Seeds;
+    item.measure.seeds = given.hasSeeds ? Seeds::Process : Seeds::None;
     return item;
 }
 
@@ -427,9 +376,8 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
     run::Plan& plan = run.plan;
     plan.profile = request.profile;
     plan.deviceClass = request.isOfGpu ? "gpu" : "software";
-    std::string content = sha256OfFile(request.files.file);
-    if (!request.files.cases.empty()) content += sha256OfFile(request.files.cases);
-    plan.buildId = "imported-" + sha256(content);
+    const std::string fileHash = sha256OfFile(request.files.file);
+    plan.buildId = "imported-" + sha256(fileHash);
     plan.experiments = request.experiments;
     for (const Experiment& experiment : plan.experiments) {
         plan.request.configs.push_back(experiment.file.string());
@@ -470,7 +418,7 @@ run::StoredRun importRun(const ImportRequest& request, const scene::Catalog& cat
         record.scene = item.recordedScene();
         run.records.push_back(std::move(record));
     }
-    run.manifest = manifestOf(plan, request, sha256OfFile(request.files.file), run.records.size());
+    run.manifest = manifestOf(plan, request, fileHash, run.records.size());
     return run;
 }
 

@@ -118,12 +118,13 @@ void writePrograms(const fs::path& file, const run::Json& manifest) {
     out.commit();
 }
 
-}  // namespace
-
+/// Whose random numbers a case has.
 std::string_view seedsName(config::Measure::Seeds seeds) {
     using Seeds = config::Measure::Seeds;
     return seeds == Seeds::Process ? "process" : seeds == Seeds::Case ? "case" : "";
 }
+
+}  // namespace
 
 void writeCases(const fs::path& file, std::span<const config::Case> cases) {
     std::vector<std::string> params;
@@ -158,19 +159,6 @@ void writeTidy(const fs::path& runDir, const run::StoredRun& run, const fs::path
         writeRun(part / kRunFile, run.manifest);
         writePrograms(part / "programs.csv", run.manifest);
     });
-}
-
-std::map<std::string, std::string> exportedRun(const fs::path& folder) {
-    std::map<std::string, std::string> entries;
-    const fs::path file = folder / kRunFile;
-    if (!fs::is_regular_file(file)) return entries;
-    const std::string text = readFile(file);
-    records::CsvReader reader(text, file.string());
-    std::vector<std::string> fields;
-    while (reader.next(fields)) {
-        if (fields.size() == 2) entries.emplace(fields[0], fields[1]);
-    }
-    return entries;
 }
 
 }  // namespace gfxrepro::outcome

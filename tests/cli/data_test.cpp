@@ -52,53 +52,6 @@ class Data : public testing::Test {
     std::string config_;
 };
 
-TEST_F(Data, ARunThatWasExportedAndImportedHasTheSameTables) {
-    endedWith(4, run(kLines));
-    EXPECT_EQ(endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy"})).out,
-              dir("run-tidy") + "\n");
-    endedWith(4, mockGfxrepro({"import", dir("run-tidy/records.csv"), "--cases",
-                               dir("run-tidy/cases.csv"), "--config", config_, "--machine",
-                               "the same one", "--out", dir("back")}));
-    const std::string table = "/tables/sweep-mock.csv";
-    EXPECT_EQ(readFile(dir("back") + table), readFile(dir("run") + table));
-    EXPECT_EQ(verdicts("back"), verdicts("run"));
-    EXPECT_THAT(verdicts("back"), testing::Contains("grows holds"));
-    EXPECT_THAT(verdicts("back"), testing::Contains("small fails"));
-    // And out again: the same cases under other ids, the same numbers.
-    ASSERT_EQ(mockGfxrepro({"export", dir("back"), "--tidy"}).exitCode, 0);
-    const auto withoutIds = [&](const std::string& name) {
-        const std::string text = readFile(dir(name));
-        records::CsvReader reader(text, name);
-        std::vector<std::string> fields;
-        std::string rest;
-        while (reader.next(fields)) {
-            for (std::size_t i = 1; i < fields.size(); ++i) rest += fields[i] + "|";
-            rest += '\n';
-        }
-        return rest;
-    };
-    EXPECT_EQ(withoutIds("back-tidy/records.csv"), withoutIds("run-tidy/records.csv"));
-}
-
-TEST_F(Data, AnExportedRunThatIsImportedIsStillOfItsMachine) {
-    run("sweep: {number: [1, 2]}\n");
-    ASSERT_EQ(mockGfxrepro({"export", dir("run"), "--tidy"}).exitCode, 0);
-    const std::vector<std::string> import = {"import", dir("run-tidy/records.csv"), "--cases",
-                                             dir("run-tidy/cases.csv"), "--out"};
-    const auto machineOf = [&](const std::string& name, const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = import;
-        arguments.push_back(dir(name));
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        EXPECT_EQ(mockGfxrepro(arguments).exitCode, 0);
-        const auto manifest = nlohmann::json::parse(readFile(dir(name) + "/manifest.json"));
-        return manifest["imported"]["machine"].get<std::string>();
-    };
-    EXPECT_THAT(machineOf("back", {}), HasSubstr("llvmpipe"));
-    EXPECT_EQ(machineOf("named", {"--machine", "mine"}), "mine");
-    fs::remove(dir("run-tidy/run.csv"));
-    EXPECT_EQ(machineOf("unknown", {}), "a machine that was not named");
-}
-
 TEST_F(Data, OfManyParametersEachIsAColumn) {
     std::string config =
         "sweep_of: wide\ntitle: T\ntechnique: external\nmeasure: {lane: quality}\n"
@@ -123,9 +76,9 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
         const ProcessResult refused =
             endedWith(2, mockGfxrepro({"import", csv, "--metric", "mse=1", "--machine", machine,
                                        "--out", dir("refused")}));
-        EXPECT_EQ(refused.err,
-                  "gfxrepro: the machine's name (--machine, or run.csv beside the cases): allowed: "
-                  "text of one line, in UTF-8\n");
+        EXPECT_EQ(
+            refused.err,
+            "gfxrepro: the machine's name (--machine): allowed: text of one line, in UTF-8\n");
         EXPECT_FALSE(fs::exists(dir("refused")));
     }
     EXPECT_EQ(imported.exitCode, 0) << imported.err;
@@ -285,47 +238,6 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
     }
     EXPECT_THAT(errorsOf("claims: {c: {says: so, bound: errr, at_most: 1}}\n"),
                 testing::StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
-}
-
-TEST_F(Data, WhatAProgramSaysIsAColumnOfItsExportToo) {
-    const std::string config = folder_.write(
-        "own.yaml",
-        "sweep_of: own\ntitle: T\nprogram:\n  command: [sh, -c, 'echo nodes {n}']\n"
-        "  params: {n: 1}\n  metrics: {nodes: {unit: node, pattern: 'nodes ([0-9]+)'}}\n"
-        "sweep: {n: [1, 2]}\nclaims: {c: {says: so, bound: nodes, at_most: 2}}\n");
-    endedWith(0, gfxrepro({"run", config, "--out", dir("own")}));
-    EXPECT_THAT(endedWith(0, gfxrepro({"claims", dir("own")})).out, testing::HasSubstr("holds"));
-    endedWith(0, gfxrepro({"export", dir("own"), "--tidy", "--out", dir("own-tidy")}));
-    const ProcessResult imported = endedWith(
-        0,
-        gfxrepro({"import", dir("own-tidy") + "/records.csv", "--cases",
-                  dir("own-tidy") + "/cases.csv", "--config", config, "--out", dir("own-back")}));
-    EXPECT_EQ(imported.err.find("unmeasured"), std::string::npos) << imported.err;
-    EXPECT_THAT(endedWith(0, gfxrepro({"claims", dir("own-back")})).out,
-                testing::AllOf(testing::HasSubstr("holds"),
-                               testing::Not(testing::HasSubstr("1 unmeasured"))));
-}
-
-TEST_F(Data, OneProcessOfSeveralThatWereAskedForDecidesNothingOfAnImport) {
-    const std::string numbers =
-        folder_.write("r.csv", "case_id,process,metric,value\nx,0,err,1\ny,0,err,2\n");
-    const std::string config =
-        folder_.write("t.yaml",
-                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
-                      "claims: {c: {says: so, order: [m=a, m=b], of: err}}\n");
-    for (const auto& [asked, verdict] : {std::pair("1", "holds"), {"6", "ambiguous"}}) {
-        const std::string cases = folder_.write(
-            "cases.csv", fmt::format("case_id,processes_asked,m\nx,{0},a\ny,{0},b\n", asked));
-        const std::string run = std::string("asked-") + asked;
-        endedWith(0, mockGfxrepro({"import", numbers, "--cases", cases, "--config", config, "--out",
-                                   dir(run)}));
-        EXPECT_THAT(verdicts(run), testing::Contains(std::string("c ") + verdict));
-    }
-    const std::string cases =
-        folder_.write("cases.csv", "case_id,processes_asked,m\nx,0,a\ny,1,b\n");
-    EXPECT_EQ(
-        endedWith(2, mockGfxrepro({"import", numbers, "--cases", cases, "--out", dir("t")})).err,
-        "gfxrepro: " + cases + ":2: column 'processes_asked' is 0; allowed: 1 … 1000000\n");
 }
 
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {

@@ -22,11 +22,7 @@ class ImportCsv : public testing::Test {
     }
     /// With columns of numbers.
     std::string wideRefusal(const std::string& text) const {
-        const ImportFiles files{folder_.write("a.csv", text), {}, {{"ms", "ms"}, {"mse", "1"}}};
-        return errorText([&] { readImport(files); }, folder_.path());
-    }
-    std::string casesRefusal(const std::string& text, const std::string& cases) const {
-        const ImportFiles files{folder_.write("a.csv", text), folder_.write("cases.csv", cases)};
+        const ImportFiles files{folder_.write("a.csv", text), {{"ms", "ms"}, {"mse", "1"}}};
         return errorText([&] { readImport(files); }, folder_.path());
     }
 
@@ -126,28 +122,6 @@ TEST_F(ImportCsv, AColumnForEachMetric) {
               "DIR/a.csv:3: no number; allowed: none only in a row whose status is not ok");
 }
 
-TEST_F(ImportCsv, CasesInAFileOfTheirOwn) {
-    const ImportFiles files{folder_.write("a.csv", "case_id,metric,value\nb,mse,1\na,mse,2\n"),
-                            folder_.write("cases.csv", "case_id,samples\na,4\nb,16\nc,64\n")};
-    const ImportedNumbers numbers = readImport(files);
-    EXPECT_EQ(numbers.cases.size(), 3U);
-    EXPECT_EQ(numbers.rows[0].caseIndex, 1U);
-    const std::string rows = "case_id,metric,value\na,mse,1\n";
-    EXPECT_EQ(casesRefusal(rows, "id,samples\na,4\n"),
-              "DIR/cases.csv:1: no column 'case_id' (columns: id, samples); needed: case_id");
-    EXPECT_EQ(casesRefusal(rows, "case_id,samples\nb,4\n"),
-              "DIR/a.csv:2: column 'case_id': 'a' is not in DIR/cases.csv");
-    EXPECT_EQ(casesRefusal(rows, "case_id,samples\na,4\na,5\n"),
-              "DIR/cases.csv:3: column 'case_id': 'a' stands in line 2 already");
-    EXPECT_EQ(casesRefusal("metric,value\nmse,1\n", "case_id\na\n"),
-              "DIR/a.csv:1: no column 'case_id' (columns: metric, value); needed: case_id, as "
-              "--cases is given");
-    EXPECT_EQ(casesRefusal("case_id,metric,value,bias\na,mse,1,2\n", "case_id\na\n"),
-              "DIR/a.csv:1: column 'bias' beside case_id; what a case is stands in DIR/cases.csv");
-    EXPECT_EQ(refusal(rows),
-              "DIR/a.csv:1: column 'case_id' without --cases FILE, which says what the cases are");
-}
-
 TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
     const std::string head = "n,metric,value,unit,frame,process,lane,status\n";
     EXPECT_EQ(refusal(""), "DIR/a.csv:1: is empty; expected a header");
@@ -200,14 +174,13 @@ TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
               "cannot read DIR/none.csv: No such file or directory");
 }
 
-TEST_F(ImportCsv, TakesWhatAnExportMayHaveInItsTexts) {
-    const auto cases = folder_.write("cases.csv", "case_id,text\nx,\"one\ttwo\nthree\"\n");
+TEST_F(ImportCsv, AMessageMayHaveAnything) {
     const auto file = folder_.write(
-        "records.csv",
-        "case_id,metric,value,status,message\nx,,,error,\"\x1b[31mred\x1b[0m\n\x07\"\n");
-    const ImportedNumbers numbers = readImport({file, cases});
-    EXPECT_EQ(numbers.cases.at(0).cell("text"), "one\ttwo\nthree");
-    EXPECT_EQ(numbers.rows.at(0).record.message, "\x1b[31mred\x1b[0m\n\x07");
+        "records.csv", "n,metric,value,status,message\nx,,,error,\"\x1b[31mred\x1b[0m\n\x07\"\n");
+    EXPECT_EQ(readImport({file}).rows.at(0).record.message, "\x1b[31mred\x1b[0m\n\x07");
+    EXPECT_EQ(refusal("case_id,metric,value\na,mse,1\n"),
+              "DIR/a.csv:1: column 'case_id' says nothing of a case here; allowed: columns of its "
+              "parameters");
 }
 
 }  // namespace
