@@ -110,52 +110,17 @@ double ownTimeOf(const fs::path& root) {
     return timeS;
 }
 
-std::optional<double> waitedOf(const fs::path& root) {
-    for (const std::string& line : linesOf(root / "proc/pressure/cpu")) {
-        const std::size_t total = line.find("total=");
-        if (!line.starts_with("some") || total == std::string::npos) continue;
-        const auto microseconds = parseDouble(line.substr(total + 6));
-        if (microseconds) return *microseconds * 1e-6;
-    }
-    return std::nullopt;
-}
-
-std::optional<double> loadOf(const fs::path& root) {
-    const std::vector<std::string> lines = linesOf(root / "proc/loadavg");
-    return lines.empty() ? std::nullopt : parseDouble(split(lines.front(), ' ').front());
-}
-
-/// Calls `take` with the folder of each processor.
-template <class Take>
-void forEachProcessor(const fs::path& root, Take&& take) {
-    for (const fs::path& folder : entriesOf(root / "sys/devices/system/cpu", "cpu")) {
-        const std::string number = folder.filename().string().substr(3);
-        if (!number.empty() && number.find_first_not_of("0123456789") == std::string::npos) {
-            take(folder);
-        }
-    }
-}
-
 std::optional<long long> throttleCountOf(const fs::path& root) {
     std::optional<long long> count;
     double package = 0.0;  // every core of a package tells the package's
-    forEachProcessor(root, [&](const fs::path& folder) {
+    for (const fs::path& folder : entriesOf(root / "sys/devices/system/cpu", "cpu")) {
         const fs::path counts = folder / "thermal_throttle";
         const auto core = numberIn(counts / "core_throttle_count");
         package = std::max(package, numberIn(counts / "package_throttle_count").value_or(0.0));
         if (core) count = count.value_or(0) + static_cast<long long>(*core);
-    });
+    }
     if (count) *count += static_cast<long long>(package);
     return count;
-}
-
-std::optional<double> clockOf(const fs::path& root) {
-    std::optional<double> fastest;
-    forEachProcessor(root, [&](const fs::path& folder) {
-        const auto kilohertz = numberIn(folder / "cpufreq/scaling_cur_freq");
-        if (kilohertz) fastest = std::max(fastest.value_or(0.0), *kilohertz * 1e3);
-    });
-    return fastest;
 }
 
 /// Seconds for which the limit of the control group held its tasks.
@@ -213,12 +178,9 @@ MachineReading readMachine(const fs::path& root) {
     MachineReading reading;
     reading.ownS = ownTimeOf(root);
     reading.processors = processorsOf(root);
-    reading.waitedS = waitedOf(root);
-    reading.load = loadOf(root);
     reading.throttleCount = throttleCountOf(root);
     reading.limitedS = limitedOf(root);
     reading.heat = heatOf(root);
-    reading.clockHz = clockOf(root);
     return reading;
 }
 

@@ -179,14 +179,11 @@ void MachineState::add(const MachineReading& before, const MachineReading& after
         state.stolenS_ = after.processors->stolenS - before.processors->stolenS;
         state.ownS_ = after.ownS - before.ownS;
     }
-    state.waitedS_ = between(before.waitedS, after.waitedS);
-    state.load_ = before.load;
     state.throttleCount_ = between(before.throttleCount, after.throttleCount);
     state.limitedS_ = between(before.limitedS, after.limitedS);
     for (const MachineReading* reading : {&before, &after}) {
         if (reading->heat && isHotter(state.heat_, *reading->heat)) state.heat_ = reading->heat;
     }
-    state.lowestHz_ = state.highestHz_ = after.clockHz;  // as the work has just ended
     add(state);
 }
 
@@ -196,14 +193,9 @@ void MachineState::add(const MachineState& other) {
     busyS_ += other.busyS_;
     ownS_ += other.ownS_;
     stolenS_ += other.stolenS_;
-    addTo(waitedS_, other.waitedS_);
     addTo(limitedS_, other.limitedS_);
     addTo(throttleCount_, other.throttleCount_);
-    if (!load_) load_ = other.load_;  // before the first
     if (other.heat_ && isHotter(heat_, *other.heat_)) heat_ = other.heat_;
-    if (other.lowestHz_)
-        lowestHz_ = std::min(lowestHz_.value_or(*other.lowestHz_), *other.lowestHz_);
-    if (other.highestHz_) highestHz_ = std::max(highestHz_.value_or(0.0), *other.highestHz_);
     gpu_.add(other.gpu_);
     for (const auto& [caseId, gpu] : other.cases_) cases_[caseId].add(gpu);
 }
@@ -229,16 +221,12 @@ Json MachineState::json() const {
                 {"own_s", ownS_},
                 {"stolen_s", stolenS_}};
     }
-    put("waited_s", waitedS_);
-    put("load_before", load_);
     put("throttle_count", throttleCount_);
     put("limited_s", limitedS_);
     if (heat_) {
         json["hottest_c"] = heat_->temperatureC;
         json["hot_from_c"] = heat_->limitC;
     }
-    put("lowest_clock_hz", lowestHz_);
-    put("highest_clock_hz", highestHz_);
     if (gpu_.isKnown()) json["gpu"] = gpu_.json();
     for (const auto& [caseId, gpu] : cases_) {
         const auto moved = gpu.movedClock();
@@ -256,15 +244,11 @@ MachineState MachineState::fromJson(const Json& json) {
     state.busyS_ = readValue<double>(json, "busy_s").value_or(0.0);
     state.ownS_ = readValue<double>(json, "own_s").value_or(0.0);
     state.stolenS_ = readValue<double>(json, "stolen_s").value_or(0.0);
-    state.waitedS_ = readValue<double>(json, "waited_s");
-    state.load_ = readValue<double>(json, "load_before");
     state.throttleCount_ = readValue<long long>(json, "throttle_count");
     state.limitedS_ = readValue<double>(json, "limited_s");
     const auto hottest = readValue<double>(json, "hottest_c");
     const auto limit = readValue<double>(json, "hot_from_c");
     if (hottest && limit) state.heat_ = Heat{*hottest, *limit};
-    state.lowestHz_ = readValue<double>(json, "lowest_clock_hz");
-    state.highestHz_ = readValue<double>(json, "highest_clock_hz");
     if (const auto gpu = json.find("gpu"); gpu != json.end() && gpu->is_object()) {
         state.gpu_ = GpuState::fromJson(*gpu);
     }

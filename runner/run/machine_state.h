@@ -38,12 +38,9 @@ struct MachineReading {
     };
     std::optional<Processors> processors;  // /proc/stat
     double ownS = 0.0;  // processor time of this process and its workers, with what these ran
-    std::optional<double> waitedS;  // in which some task, ours too, waited for a processor
-    std::optional<double> load;     // tasks that run or wait, ours too: mean of the last minute
     std::optional<long long> throttleCount;  // times that a core was slowed for its heat
     std::optional<double> limitedS;          // that our control group was held by its limit
     std::optional<Heat> heat;
-    std::optional<double> clockHz;  // of the fastest core
 };
 
 /// `root` stands for /, in tests another folder. Reads some small files: a fraction of a
@@ -94,9 +91,8 @@ class MachineState {
     bool isKnown() const {
         return processorS_ > 0.0 || throttleCount_ || limitedS_ || heat_ || gpu_.isKnown();
     }
-    /// {"processors", "processor_s", "busy_s", "own_s", "stolen_s", "waited_s", "load_before",
-    /// "throttle_count", "limited_s", "hottest_c", "hot_from_c", "lowest_clock_hz",
-    /// "highest_clock_hz", "gpu", "gpu_clock_moved": {case: {"lowest_clock_hz",
+    /// {"processors", "processor_s", "busy_s", "own_s", "stolen_s", "throttle_count", "limited_s",
+    /// "hottest_c", "hot_from_c", "gpu", "gpu_clock_moved": {case: {"lowest_clock_hz",
     /// "highest_clock_hz"}}}: of these what is known.
     Json json() const;
     static MachineState fromJson(const Json& json);
@@ -114,7 +110,7 @@ class MachineState {
 
     int processorCount_ = 0;
     double processorS_ = 0.0, busyS_ = 0.0, ownS_ = 0.0, stolenS_ = 0.0;
-    std::optional<double> waitedS_, load_, limitedS_, lowestHz_, highestHz_;
+    std::optional<double> limitedS_;
     std::optional<long long> throttleCount_;
     std::optional<Heat> heat_;
     GpuState gpu_;
