@@ -1,8 +1,6 @@
 #include "runner/cluster/predictions.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.h"
@@ -15,13 +13,13 @@ namespace gfxrepro::cluster {
 
 namespace fs = std::filesystem;
 
+std::string_view sourceName(Prediction::Source source) {
+    static constexpr std::string_view kNames[] = {"same case", "same case, other run", "median",
+                                                  "file"};
+    return kNames[static_cast<std::size_t>(source)];
+}
+
 namespace {
-
-/// In factors of two of one number: 1.5 times as much.
-constexpr double kFarthestTold = 0.6;
-
-/// Behind the source of a prediction in a file that tells people nothing.
-constexpr std::string_view kFarMark = ", far";
 
 constexpr std::string_view kFileHeader = "title,time_s,memory_bytes,source";
 
@@ -42,10 +40,6 @@ double scaledTimeS(const PastCase& past, const config::Measure& measure) {
 std::string contentOf(const config::Case& item) {
     return item.technique + item.scene.toFlowText() + item.params.toFlowText() +
            std::to_string(item.outputWidthPx) + 'x' + std::to_string(item.outputHeightPx);
-}
-
-std::string methodOf(const config::Case& item) {
-    return item.technique + '/' + item.method();
 }
 
 /// The costs in a run's journal, by case. Lines that are torn or without a cost are passed over.
@@ -80,19 +74,13 @@ std::map<std::string, Prediction> readPredictions(const fs::path& file) {
         const auto timeS = fields.size() == 4 ? parseDouble(fields[1]) : std::nullopt;
         const auto bytes = fields.size() == 4 ? parseInteger(fields[2]) : std::nullopt;
         if (!timeS || !bytes) throw Error(reader.location(), "is no line of predictions");
-        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File, "",
-                                  !fields[3].ends_with(kFarMark)};
+        predictions[fields[0]] = {*timeS, *bytes, Prediction::Source::File,
+                                  fields[3] != sourceName(Prediction::Source::Median)};
     }
     return predictions;
 }
 
 }  // namespace
-
-std::string_view sourceName(Prediction::Source source) {
-    static constexpr std::string_view kNames[] = {"same case", "same case, other run", "nearest",
-                                                  "median", "file"};
-    return kNames[static_cast<std::size_t>(source)];
-}
 
 run::Cost usualCost(const std::vector<run::Cost>& costs) {
     double recordS = 0.0;
@@ -150,7 +138,6 @@ Predictor::Predictor(std::vector<PastCase> past) : past_(std::move(past)) {
     for (std::size_t i = 0; i < past_.size(); ++i) {
         byId_.try_emplace(past_[i].item.id, i);
         byContent_.try_emplace(contentOf(past_[i].item), i);
-        features_.push_back(featuresOf(past_[i].item));
     }
 }
 
@@ -174,7 +161,7 @@ std::optional<Prediction> Predictor::predict(const config::Case& item) const {
     if (const auto found = file_.find(item.title()); found != file_.end()) return found->second;
     const auto as = [&](std::size_t index, Prediction::Source source) {
         const PastCase& past = past_[index];
-        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source, "", true};
+        return Prediction{scaledTimeS(past, item.measure), past.cost.peakBytes, source};
     };
     if (const auto found = byId_.find(item.id); found != byId_.end()) {
         return as(found->second, Prediction::Source::SameCase);
@@ -182,59 +169,7 @@ std::optional<Prediction> Predictor::predict(const config::Case& item) const {
     if (const auto found = byContent_.find(contentOf(item)); found != byContent_.end()) {
         return as(found->second, Prediction::Source::OtherRun);
     }
-    std::optional<Prediction> prediction = nearest(item);
-    return prediction ? prediction : median(item);
-}
-
-std::vector<Predictor::Feature> Predictor::featuresOf(const config::Case& item) {
-    std::vector<Feature> features = {
-        {"scene", item.scene.isNull() ? "" : item.scene.text(), {}},
-        {"pixels", "", static_cast<double>(item.outputWidthPx) * item.outputHeightPx}};
-    for (const auto& [name, value] : item.params.entries()) {
-        if (value.isScalar()) {
-            features.push_back({name, value.text(), value.tryDouble()});
-        } else {
-            features.push_back({name, value.toFlowText(), {}});
-        }
-    }
-    return features;
-}
-
-/// A factor of two in a number counts as much as another word in a text. The same technique and
-/// method declare the same parameters in the same order; where not, the name differs.
-double Predictor::distance(const std::vector<Feature>& a, const std::vector<Feature>& b) {
-    double sum = std::abs(static_cast<double>(a.size()) - static_cast<double>(b.size()));
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        if (a[i].name == b[i].name && a[i].number && b[i].number) {
-            const double x = *a[i].number, y = *b[i].number;
-            if (x > 0.0 && y > 0.0) {
-                sum += std::abs(std::log2(x / y));
-            } else {
-                sum += x == y ? 0.0 : 1.0;
-            }
-        } else {
-            sum += a[i].name == b[i].name && a[i].text == b[i].text ? 0.0 : 1.0;
-        }
-    }
-    return sum;
-}
-
-std::optional<Prediction> Predictor::nearest(const config::Case& item) const {
-    const std::vector<Feature> features = featuresOf(item);
-    const std::string method = methodOf(item);
-    double least = std::numeric_limits<double>::infinity();
-    const PastCase* found = nullptr;
-    for (std::size_t i = 0; i < past_.size(); ++i) {
-        if (past_[i].item.technique != item.technique || methodOf(past_[i].item) != method)
-            continue;
-        const double d = distance(features, features_[i]);
-        if (d >= least) continue;
-        least = d;
-        found = &past_[i];
-    }
-    if (!found) return std::nullopt;
-    return Prediction{scaledTimeS(*found, item.measure), found->cost.peakBytes,
-                      Prediction::Source::Nearest, found->item.title(), least <= kFarthestTold};
+    return median(item);
 }
 
 std::optional<Prediction> Predictor::median(const config::Case& item) const {
@@ -247,10 +182,9 @@ std::optional<Prediction> Predictor::median(const config::Case& item) const {
         }
     }
     const int which = timesS[1].empty() ? 0 : 1;
-    const std::string count = std::to_string(timesS[which].size());
     return Prediction{metrics::median(timesS[which]),
                       static_cast<long long>(metrics::median(bytes[which])),
-                      Prediction::Source::Median, "of " + count + " cases", false};
+                      Prediction::Source::Median, false};
 }
 
 void writePredictions(const fs::path& path, const run::Plan& plan, const Predictor& predictor) {
@@ -260,9 +194,7 @@ void writePredictions(const fs::path& path, const run::Plan& plan, const Predict
         if (!known) continue;
         records::CsvRow row(text);
         row.text(item.title()).number(known->timeS).integer(known->memoryBytes);
-        row.text(std::string(sourceName(known->source)) +
-                 std::string(known->isTold ? "" : kFarMark))
-            .end();
+        row.text(sourceName(known->source)).end();
     }
     writeFileAtomic(path, text);
 }

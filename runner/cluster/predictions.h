@@ -17,19 +17,15 @@ struct Prediction {
     enum class Source {
         SameCase,  // measured, by the same hash
         OtherRun,  // the same parameters, scene and size under another build, device or profile
-        Nearest,   // the same technique and method with the nearest parameters and size
         Median,    // of all cases of the technique, or of all cases
         File,      // as a file of predictions says
     };
     double timeS = 0.0;
     long long memoryBytes = 0;
     Source source = Source::SameCase;
-    std::string detail;  // of Nearest: the other case's title; of Median: "of 12 cases"
-    /// Whether it is good for more than to balance shards by: another method's time, or that of a
-    /// value more than 1.5 times as large (a volume of 3.4 times), tells people nothing.
-    bool isTold = true;
+    bool isTold = true;  // else, as a median is, it is good to balance shards by, and no more
 };
-/// "same case", "same case, other run", "nearest", "median", "file".
+/// "same case", "same case, other run", "median", "file".
 std::string_view sourceName(Prediction::Source source);
 
 /// A case that an earlier run finished.
@@ -60,26 +56,16 @@ class Predictor {
     std::optional<Prediction> predict(const config::Case& item) const;
 
   private:
-    /// A parameter as a number, or as text where it is none.
-    struct Feature {
-        std::string name;
-        std::string text;
-        std::optional<double> number;
-    };
-    static std::vector<Feature> featuresOf(const config::Case& item);
-    static double distance(const std::vector<Feature>& a, const std::vector<Feature>& b);
-    std::optional<Prediction> nearest(const config::Case& item) const;
     std::optional<Prediction> median(const config::Case& item) const;
 
     std::vector<PastCase> past_;
-    std::vector<std::vector<Feature>> features_;  // beside past_
     std::map<std::string, std::size_t> byId_;
     std::map<std::string, std::size_t> byContent_;
     std::map<std::string, Prediction> file_;  // by title
 };
 
-/// A line a case: title, time of one process, memory, source, "…, far" where it tells people
-/// nothing. Every shard of a plan is cut by the same predictions; a file keeps them.
+/// A line a case: title, time of one process, memory, source. Every shard of a plan is cut by the
+/// same predictions; a file keeps them.
 void writePredictions(const std::filesystem::path& path, const run::Plan& plan,
                       const Predictor& predictor);
 

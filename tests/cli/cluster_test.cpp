@@ -67,15 +67,14 @@ TEST(Plan, PredictsFromEarlierRuns) {
     const std::string dir = folder.path() / "earlier";
     ASSERT_EQ(measure(config, dir, {"--sweep", "number=1,2"}).exitCode, 0);
 
-    const ProcessResult after = mockGfxrepro({"plan", config, "--from", dir});
+    const ProcessResult after =
+        mockGfxrepro({"plan", config, "--from", dir, "--sweep", "number=1,2"});
     EXPECT_THAT(planLine(after.out, 1), HasSubstr(" MiB  same case "));
-    EXPECT_THAT(planLine(after.out, 3), HasSubstr(" MiB  nearest "));
     EXPECT_THAT(after.out, HasSubstr("as " + dir + " tells\n"));
-    const ProcessResult far =
-        mockGfxrepro({"plan", config, "--from", dir, "--sweep", "number=2,8"});
-    EXPECT_THAT(planLine(far.out, 8), ContainsRegex("120 s +- +- +- "));
-    EXPECT_THAT(far.out, HasSubstr("no earlier run tells the time"))
-        << "nothing rather than what is four times as much";
+    const ProcessResult other = mockGfxrepro({"plan", config, "--from", dir});
+    EXPECT_THAT(planLine(other.out, 3), ContainsRegex("120 s +- +- +- "));
+    EXPECT_THAT(other.out, HasSubstr("no earlier run tells the time"))
+        << "nothing rather than another case's";
     EXPECT_THAT(mockGfxrepro({"plan", config, "--from", dir, "--set", "measure.repeats=2"}).out,
                 HasSubstr("same case, other run"));
     const ProcessResult none =

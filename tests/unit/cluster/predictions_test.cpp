@@ -1,4 +1,4 @@
-// Predictions by the same case, the same parameters, the nearest ones, the median; and files.
+// Predictions by the same case, the same parameters, the median; and files.
 #include "runner/cluster/predictions.h"
 
 #include <gtest/gtest.h>
@@ -52,23 +52,6 @@ TEST(Predictions, FollowIterationsAndFrames) {
     EXPECT_DOUBLE_EQ(predictor.predict(item)->timeS, 0.5 + 0.25 + 16.0 + 3.0);
 }
 
-TEST(Predictions, NearestOfTheSameMethod) {
-    const Predictor predictor({makePast(makeCase("t/1", "a", 64), 1.0),
-                               makePast(makeCase("t/1", "a", 512), 8.0),
-                               makePast(makeCase("t/1", "b", 256), 100.0)});
-    const auto near = predictor.predict(makeCase("t/1", "a", 256));
-    EXPECT_EQ(near->source, Source::Nearest);
-    EXPECT_DOUBLE_EQ(near->timeS, 8.0);  // a factor of 2 is nearer than one of 4
-    EXPECT_EQ(near->detail, "t/1 method=a size=512");
-    EXPECT_FALSE(near->isTold) << "a factor of 2 may be one of 8 in time";
-    EXPECT_TRUE(predictor.predict(makeCase("t/1", "a", 90))->isTold);
-    EXPECT_DOUBLE_EQ(predictor.predict(makeCase("t/1", "a", 100))->timeS, 1.0);
-    Case larger = makeCase("t/1", "a", 64);
-    larger.id = "larger";
-    larger.outputWidthPx = 16;
-    EXPECT_EQ(predictor.predict(larger)->source, Source::Nearest);
-}
-
 TEST(Predictions, MedianOfTheTechniqueElseOfAll) {
     Case other = makeCase("t/1", "x", 1);
     other.technique = "other";
@@ -78,18 +61,16 @@ TEST(Predictions, MedianOfTheTechniqueElseOfAll) {
     const auto sameTechnique = predictor.predict(makeCase("t/1", "d", 1));
     EXPECT_EQ(sameTechnique->source, Source::Median);
     EXPECT_DOUBLE_EQ(sameTechnique->timeS, 3.0);
-    EXPECT_EQ(sameTechnique->detail, "of 3 cases");
     EXPECT_FALSE(sameTechnique->isTold);
     Case third = makeCase("t/1", "x", 1);
     third.id = third.technique = "third";
     EXPECT_DOUBLE_EQ(predictor.predict(third)->timeS, 3.5);
-    EXPECT_EQ(predictor.predict(third)->detail, "of 4 cases");
 }
 
 TEST(Predictions, SurviveAFile) {
     const TemporaryFolder folder;
     run::Plan plan;
-    plan.cases = {makeCase("t/1", "a", 64), makeCase("t/1", "a", 70), makeCase("t/1", "a", 700)};
+    plan.cases = {makeCase("t/1", "a", 64), makeCase("t/1", "a", 70)};
     plan.cases[1].measure.processes = 3;
     const Predictor predictor({makePast(plan.cases[0], 1.0 / 3.0)});
     const auto file = folder.path() / "predictions.csv";
@@ -97,12 +78,11 @@ TEST(Predictions, SurviveAFile) {
     EXPECT_EQ(readFile(file),
               "title,time_s,memory_bytes,source\n"
               "t/1 method=a size=64,0.3333333333333333,1048576,same case\n"
-              "t/1 method=a size=70,0.3333333333333333,1048576,nearest\n"
-              "t/1 method=a size=700,0.3333333333333333,1048576,\"nearest, far\"\n");
+              "t/1 method=a size=70,0.3333333333333333,1048576,median\n");
     const Predictor again = Predictor::from({file});
     EXPECT_EQ(again.predict(plan.cases[1])->source, Source::File);
-    EXPECT_TRUE(again.predict(plan.cases[1])->isTold);
-    EXPECT_FALSE(again.predict(plan.cases[2])->isTold);
+    EXPECT_TRUE(again.predict(plan.cases[0])->isTold);
+    EXPECT_FALSE(again.predict(plan.cases[1])->isTold);
     EXPECT_EQ(cluster::caseTimesS(plan, again), cluster::caseTimesS(plan, predictor));
     EXPECT_DOUBLE_EQ(cluster::caseTimesS(plan, again)[1], 1.0);  // three processes
     // The class of the device is in the hash, not in the title: a plan for another is cut alike.
