@@ -42,12 +42,14 @@ std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder
 std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
                                       const std::string& technique) {
     const bool hasScene = lines.find("scene: ") != lines.npos;
+    // Frames stand beside the size.
+    constexpr std::string_view kFrames = "output: {frames: ";
+    const bool hasFrames = lines.starts_with(kFrames);
+    const std::string size = "output: {width: 8, height: 8";
     return folder.write(
         "mock.yaml",
         "sweep_of: mock\ntitle: A mock\ntechnique: " + technique + (hasScene ? "_of_scenes" : "") +
-            "\n"
-            "output: {width: 8, height: 8}\n" +
-            lines +
+            "\n" size + (hasFrames ? ", " + lines.substr(kFrames.find('{') + 1) : "}\n" + lines) +
             // Without a layout it would be timed, which tests of other things need not.
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));
 }

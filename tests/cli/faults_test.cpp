@@ -142,13 +142,14 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
 
 /// Of each pass, of its pictures, and of all files of a run together.
 TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
-    const auto program = [&](const std::string& name, const std::string& lines,
-                             const std::string& measure) {
+    const auto program = [&](const std::string& name, const std::string& lines, int processes,
+                             int frames) {
         return folder
             .write(name, "sweep_of: " + name.substr(0, 1) + "\ntitle: T\nprogram:\n" +
                              "  command: /bin/true {n} {frames}\n  frames: all\n" +
-                             "  params: {n: 1}\n" + lines + "measure: {lane: quality, " + measure +
-                             "}\n")
+                             "  params: {n: 1}\n" + lines +
+                             "measure: {lane: quality, processes: " + std::to_string(processes) +
+                             "}\noutput: {frames: " + std::to_string(frames) + "}\n")
             .string();
     };
     const auto said = [&](const std::vector<std::string>& files) {
@@ -160,16 +161,15 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
     std::string passes = "  passes: {";
     for (int i = 0; i < 50; ++i) passes += (i ? ", p" : "p") + std::to_string(i) + ": a pass";
     const std::string metrics = "  metrics: {rays: ray, hits: ray}\n";
-    const std::string some = program("a.yaml", metrics, "processes: 1, frames: 100000");
+    const std::string some = program("a.yaml", metrics, 1, 100000);
     EXPECT_THAT(said({some}), Not(HasSubstr("million")));
     // 2 × 50 values and the times of 50 passes, of each frame.
-    EXPECT_THAT(said({program("b.yaml", metrics + passes + "}\n", "processes: 1, frames: 100000")}),
+    EXPECT_THAT(said({program("b.yaml", metrics + passes + "}\n", 1, 100000)}),
                 HasSubstr("about 20 million rows of records, of at most 64 million in a run\n"));
-    EXPECT_THAT(said({program("c.yaml", "  images: {r: {file: \"r{frame}.png\"}}\n",
-                              "processes: 1, frames: 1000000")}),
+    EXPECT_THAT(said({program("c.yaml", "  images: {r: {file: \"r{frame}.png\"}}\n", 1, 1000000)}),
                 HasSubstr("about 1 million pictures, of at most 4 million in a run\n"));
-    const std::string half = program("d.yaml", metrics, "processes: 8, frames: 1000000");
-    const std::string other = program("e.yaml", metrics, "processes: 8, frames: 1000000");
+    const std::string half = program("d.yaml", metrics, 8, 1000000);
+    const std::string other = program("e.yaml", metrics, 8, 1000000);
     EXPECT_THAT(said({half}), Not(HasSubstr("it will stop")));
     EXPECT_THAT(said({half, other}),
                 HasSubstr("all in one run: about 80 million rows of records, of at most 64 million "
@@ -451,7 +451,7 @@ TEST_F(Faults, FramesThatATechniqueDoesNotHaveAreRefusedBeforeTheRun) {
     const std::string config = writeMockConfig(folder, "output: {frames: 501}\n");
     for (const char* command : {"check", "plan", "run"}) {
         EXPECT_THAT(endedWith(2, mockGfxrepro({command, config})).err,
-                    HasSubstr(":18: the mock has 500 frames\n"));
+                    HasSubstr(":39: the mock has 500 frames\n"));
     }
     const std::string all = writeMockConfig(folder, "output: {frames: 500}\n");
     EXPECT_EQ(mockGfxrepro({"check", all}).exitCode, 0);

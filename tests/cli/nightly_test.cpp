@@ -216,7 +216,10 @@ TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
     EXPECT_EQ(endedWith(0, shown()).out, "");
     isCrashing = false;
     ASSERT_EQ(night(0).exitCode, 0);
+    endedWith(0, shown());
+    EXPECT_FALSE(fs::exists(folder.path() / "benchmark.json")) << "no times";
     letAWeekPass();
+    isTimed = true;
     ASSERT_EQ(night(1).exitCode, 0);
     const ProcessResult later = endedWith(0, shown());
     EXPECT_NE(later.out.find("With the fixed build:\n"), std::string::npos) << later.out;

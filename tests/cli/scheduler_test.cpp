@@ -175,8 +175,8 @@ TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
         const int units = 2 * std::stoi(processes);
         EXPECT_EQ(outcome.finished, units);
         const std::vector<std::string> lines = logLines();
-        ASSERT_EQ(lines.size(), 4U * static_cast<std::size_t>(units));
-        for (std::size_t pair = 0; pair < lines.size(); pair += 8) {
+        ASSERT_EQ(lines.size(), 6U * static_cast<std::size_t>(units));
+        for (std::size_t pair = 0; pair < lines.size(); pair += 12) {
             // The second round goes backwards.
             const std::string first = pair == 0 ? "1 " : "2 ", second = pair == 0 ? "2 " : "1 ";
             const auto at = lines.begin() + static_cast<std::ptrdiff_t>(pair);
@@ -184,9 +184,11 @@ TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
                         UnorderedElementsAre("1 setup begins", "2 setup begins", "1 setup ends",
                                              "2 setup ends"));
             EXPECT_THAT(at[1], EndsWith("begins"));
-            EXPECT_THAT(std::vector(at + 4, at + 8),
-                        ElementsAre(first + "frame begins", first + "frame ends",
-                                    second + "frame begins", second + "frame ends"));
+            EXPECT_THAT(
+                std::vector(at + 4, at + 12),  // each is drawn once before it is timed
+                ElementsAre(first + "frame begins", first + "frame ends", first + "frame begins",
+                            first + "frame ends", second + "frame begins", second + "frame ends",
+                            second + "frame begins", second + "frame ends"));
         }
         fs::remove_all(folder.path() / "planned");
         fs::remove_all(dir);
@@ -195,7 +197,7 @@ TEST_F(PairedUnits, SetUpSideBySideAndDrawOneAfterTheOther) {
 
 TEST_F(PairedUnits, AWaitIsNoPartOfALimit) {
     const run::RunOutcome outcome = measureLogged(
-        "sweep: {number: [1, 2]}\nparams: {pause_ms: 2000}\n"
+        "sweep: {number: [1, 2]}\nparams: {pause_ms: 1000}\n"
         "measure: {lane: timing, repeats: 1, processes: 1, time_limit_s: 3.5}\n");
     EXPECT_EQ(outcome.finished, 2);
     EXPECT_EQ(outcome.flaky, 0);
@@ -211,8 +213,9 @@ TEST_F(PairedUnits, WhenOneCrashesTheOtherGoesOnAndThenItIsTriedAlone) {
     EXPECT_EQ(outcome.flaky, 1);
     EXPECT_THAT(turns, ElementsAre(2, 1, 1));
     const std::vector<std::string> lines = logLines();
-    EXPECT_THAT(std::vector(lines.end() - 4, lines.end()),
-                ElementsAre("1 setup begins", "1 setup ends", "1 frame begins", "1 frame ends"));
+    EXPECT_THAT(std::vector(lines.end() - 6, lines.end()),
+                ElementsAre("1 setup begins", "1 setup ends", "1 frame begins", "1 frame ends",
+                            "1 frame begins", "1 frame ends"));
 }
 
 TEST_F(SchedulerTest, TablesThatShowSetUpAreNotPreparedInPairs) {

@@ -93,7 +93,7 @@ TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
 
 TEST_F(Sensitivity, GoesOnWhereKeptResultsEnd) {
     const std::string keep = folder.path() / "keep";
-    const auto kept = [&] { return readFile(keep + "/software/full/sweep-mock.csv"); };
+    const auto kept = [&] { return readFile(keep + "/software-full.csv"); };
     const auto run = [&](const std::string& claim, const std::string& out,
                          const std::vector<std::string>& more) {
         std::vector<std::string> command =

@@ -78,12 +78,12 @@ TEST(SameMean, IsAskedOfItsMetricAlone) {
 }
 
 TEST(SameMean, IsRefusedWhereItCouldNotFail) {
-    const auto errorWith = [](const std::string& truth, const std::string& measure,
+    const auto errorWith = [](const std::string& truth, const std::string& output,
                               const std::string& rate) {
         const std::string error = checkError(
             "program: {command: \"t {n} {frame}\", params: {n: 4}, images: {result: {file: r.exr, "
             "truth: " +
-            truth + "}}}\nmeasure: " + measure + "\n" +
+            truth + "}}}\noutput: " + output + "\n" +
             bodyOf("same_mean: p, origin: ours, false_alarms: " + rate));
         return error.substr(error.find("claim 'X'") == std::string::npos ? 0
                                                                          : error.find("claim 'X'"));

@@ -105,7 +105,6 @@ TEST_F(ImportCsv, AsOtherProgramsWriteIt) {
 TEST_F(ImportCsv, AColumnForEachMetric) {
     const ImportFiles files{
         folder_.write("a.csv", "samples,process,ms,mse\n4,0,10,0.5\n4,1,11,\n16,0,40,0.1\n"),
-        {},
         {{"ms", "ms"}, {"mse", "1"}}};
     const ImportedNumbers numbers = readImport(files);
     EXPECT_EQ(numbers.columns, std::vector<std::string>{"samples"});

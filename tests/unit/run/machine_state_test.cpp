@@ -245,7 +245,8 @@ TEST_F(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
               "processors");
     const Json manifest = {{"machine_states", watch.states()}};
     EXPECT_THAT(run::machineStateNote(manifest, "t/1"), HasSubstr("took 20 % of 2 processors"));
-    EXPECT_THAT(run::machineStateNote(manifest, "t/2"), HasSubstr("was quiet"));
+    EXPECT_THAT(run::machineStateNote(manifest, "t/2"),
+                HasSubstr("Nothing disturbed the machine while this was timed: "));
     EXPECT_EQ(run::machineStateNote(manifest, "t/3"), "");
     EXPECT_EQ(run::machineStateNote(Json::object(), "t/1"), "");
 

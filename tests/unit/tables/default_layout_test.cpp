@@ -108,7 +108,7 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
     const auto notes = [&] { return buildTable(experiment, recordedAt({32, 64})).notes; };
     experiment.outputs.metrics.push_back({"key_frame_interval", "frame", "since the last"});
     EXPECT_THAT(notes(), Contains("One frame of each case is measured: the key frame interval, and "
-                                  "whatever follows from frames before, needs several (`measure: "
+                                  "whatever follows from frames before, needs several (`output: "
                                   "{frames: 20}`)."));
     const auto saysSo = Contains(testing::StartsWith("One frame"));
     experiment.outputs.metrics.back().name = "digest";  // which is recorded

@@ -929,11 +929,11 @@ TEST(Table, OnesOwnExperimentNeedsNoLayout) {
     const Table table = buildTable(own, maker.records());
     ASSERT_EQ(table.rowAxes, (std::vector<std::string>{"resolution"}));
     ASSERT_EQ(table.columns.size(), 2U);
-    EXPECT_EQ(table.columns[0].label, "draw_ms");
-    EXPECT_EQ(table.columns[1].label, "triangles");
+    EXPECT_EQ(table.columns[0].label, "triangles");
+    EXPECT_EQ(table.columns[1].label, "draw_ms") << "the steps of a frame last";
     ASSERT_EQ(table.rows.size(), 2U);
     EXPECT_EQ(table.rows[1].labels[0], "128");
-    EXPECT_EQ(table.rows[1].cells[0].measured, "4");
+    EXPECT_EQ(table.rows[1].cells[1].measured, "4");
     EXPECT_TRUE(buildTable(own, {}).columns.empty());
 }
 
