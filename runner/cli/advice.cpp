@@ -23,7 +23,7 @@ constexpr gl::DeviceLimits::StorageBlocks kUsedStorageBlocks{.vertex = 4,
                                                              .tessellationControl = 4,
                                                              .tessellationEvaluation = 1,
                                                              .fragment = 8,
-                                                             .compute = 13};
+                                                             .compute = 12};
 // Another task on every fifth core already shows in the intervals.
 constexpr double kMaxLoadPerCore = 0.2;
 constexpr double kMaxStolenFraction = 0.01;

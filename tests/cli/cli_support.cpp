@@ -49,7 +49,7 @@ std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::
     return folder.write(
         "mock.yaml",
         "sweep_of: mock\ntitle: A mock\ntechnique: " + technique + (hasScene ? "_of_scenes" : "") +
-            "\n" size + (hasFrames ? ", " + lines.substr(kFrames.find('{') + 1) : "}\n" + lines) +
+            "\n" + size + (hasFrames ? ", " + lines.substr(kFrames.find('{') + 1) : "}\n" + lines) +
             // Without a layout it would be timed, which tests of other things need not.
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));
 }

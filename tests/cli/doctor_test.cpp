@@ -63,7 +63,7 @@ TEST(Doctor, FewStorageBlocks) {
     facts.devices[0].maxStorageBlocks = {0, 16, 16, 16, 8};
     EXPECT_EQ(linesOf(facts),
               "results few_storage_blocks: Device 0 gives its shaders fewer storage blocks than "
-              "some programs use (vertex 0 of 4, compute 8 of 13): their cases will fail. → "
+              "some programs use (vertex 0 of 4, compute 8 of 12): their cases will fail. → "
               "Measure those on another device.\n");
 }
 
