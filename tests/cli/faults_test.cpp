@@ -174,8 +174,8 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
     EXPECT_THAT(said({half, other}),
                 HasSubstr("all in one run: about 80 million rows of records, of at most 64 million "
                           "in a run: it will stop before its end; measure it in parts"));
-    const std::string units = program("f.yaml", "", "processes: 600000");
-    EXPECT_THAT(said({units, program("g.yaml", "", "processes: 600000")}),
+    const std::string units = program("f.yaml", "", 600000, 1);
+    EXPECT_THAT(said({units, program("g.yaml", "", 600000, 1)}),
                 HasSubstr("all in one run: 1200000 measurements (cases × processes), of at most "
                           "1000000 in a run: `plan` and `run` refuse it\n"));
 }
