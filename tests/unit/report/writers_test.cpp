@@ -205,7 +205,7 @@ TEST(Writers, ClaimFiles) {
     using Outcome = records::CaseEnd::Outcome;
     const std::vector<records::CaseEnd> cases = {
         {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Measured},
-        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>", {}, 0.25},
+        {"zju2005/9.9", "zju2005/9.9 scene=a", Outcome::Failed, "crash: <11>", 0.25},
         {"zju2005/9.9", "zju2005/9.9 scene=b", Outcome::Skipped, "missing: too slow"},
         {"zju2005/9.9", "zju2005/9.9 text=\x01", Outcome::Measured},
         {"zju2005/9.9", "zju2005/9.9 text=\x02", Outcome::Measured}};
