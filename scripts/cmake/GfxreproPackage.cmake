@@ -30,7 +30,7 @@ install(PROGRAMS "${CMAKE_SOURCE_DIR}/scripts/fetch-assets" "${CMAKE_SOURCE_DIR}
 # Of the kept results, what a report reads.
 install(DIRECTORY "${CMAKE_SOURCE_DIR}/results/sensitivity" "${CMAKE_SOURCE_DIR}/results/calibration"
     DESTINATION "${CMAKE_INSTALL_DATADIR}/gfxrepro/results" FILES_MATCHING PATTERN "*.csv")
-install(FILES "${CMAKE_SOURCE_DIR}/README.md" "${CMAKE_SOURCE_DIR}/CHANGELOG.md" "${CMAKE_SOURCE_DIR}/CITATION.cff"
+install(FILES "${CMAKE_SOURCE_DIR}/README.md" "${CMAKE_SOURCE_DIR}/GUIDE.md" "${CMAKE_SOURCE_DIR}/CHANGELOG.md" "${CMAKE_SOURCE_DIR}/CITATION.cff"
     DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 # Debian's policy wants the notice with a pointer to the licence, and a changelog of its own form.

@@ -1,4 +1,4 @@
-// The configs of configs/external and README.md's example, on real programs.
+// The configs of configs/external and GUIDE.md's example, on real programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,15 +47,14 @@ TEST_F(ShippedPrograms, PovRaysExpectationIsTheSameWithoutEdgesAlone) {
     expectClaimsHold("povray-expectation.yaml", folder.path() / "run");
 }
 
-TEST_F(ShippedPrograms, TheReadmesExampleWorksAsTyped) {
+TEST_F(ShippedPrograms, TheGuidesExampleWorksAsTyped) {
     if (!isHere("povray")) GTEST_SKIP() << "povray is not here";
     const fs::path configs = GFXREPRO_CONFIGS;
-    const std::string readme = readFile(configs.parent_path() / "README.md");
-    const std::size_t section = readme.find("## Your program, your numbers");
-    const std::size_t begin = readme.find("```yaml mine.yaml\n", section) + 18;
+    const std::string guide = readFile(configs.parent_path() / "GUIDE.md");
+    const std::size_t section = guide.find("## A renderer's pictures");
+    const std::size_t begin = guide.find("```yaml mine.yaml\n", section) + 18;
     ASSERT_LT(section, begin);
-    const std::string config =
-        folder.write("mine.yaml", readme.substr(begin, readme.find("```", begin) - begin));
+    const std::string config = folder.write("mine.yaml", guide.substr(begin, guide.find("```", begin) - begin));
     folder.write("configs/external/hall.pov", readFile(configs / "external" / "hall.pov"));
     endedWith(0, gfxrepro({"reproduce", config, "--out", dir}));
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 18U);

@@ -14,7 +14,7 @@ import tempfile
 import time
 
 PAGE, PROGRAM = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-IS_README = PAGE.name == "README.md"  # whose tables are of papers: some of their claims cannot be told
+IS_GUIDE = PAGE.name == "GUIDE.md"  # whose tables are of papers: some of their claims cannot be told
 LEFT_OUT = re.compile(r"<!-- not run by its test: (.+) -->")
 
 
@@ -86,17 +86,17 @@ def main():
                                           text=True, check=False)
                     print(f"{PAGE.name}:{number}: {command}  ({time.monotonic() - start:.1f} s, exit code {done.returncode})")
                     ran += 1
-                    if done.returncode != 0 or not IS_README and re.search("^claims: .*ambiguous", done.stdout, re.M):
+                    if done.returncode != 0 or not IS_GUIDE and re.search("^claims: .*ambiguous", done.stdout, re.M):
                         problems.append(f"{PAGE.name}:{number}: {command}\n{done.stdout}{done.stderr}")
             elif language == "yaml":
                 problems.append(f"{PAGE.name}:{line}: a block of YAML without the name of its file")
-        for report in ("my-scene.html",) if IS_README else ():
+        for report in ("my-scene.html",) if IS_GUIDE else ():
             page = (here / report).read_text() if (here / report).exists() else ""
             for what, pattern in (("a picture", 'class="shot"'), ("a curve", 'class="curve"><'),
                                   ("the user's title", "My model at three resolutions</h1>")):
                 if pattern not in page:
                     problems.append(f"{report} has not {what}: {pattern}")
-    if ran < (8 if IS_README else 2):
+    if ran < (8 if IS_GUIDE else 2):
         problems.append(f"only {ran} commands were run")
     print("\n".join(problems))
     return 1 if problems else 0
