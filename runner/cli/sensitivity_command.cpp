@@ -93,9 +93,12 @@ studies::VariationResult measureNext(Study& study, const Chosen& selection) {
     const bool isAnswer = end.exitCode == kExitOk || end.exitCode == kExitUsage;
     if (!isAnswer) study.isIncomplete = true;
     if (end.exitCode != kExitOk && end.exitCode != kExitIncomplete) {
-        std::string_view said = trimmed(end.output);
+        std::string said(trimmed(end.output));
         const std::size_t error = said.find("gfxrepro: ");  // after the device that the run names
-        if (error != std::string_view::npos) said.remove_prefix(error);
+        if (error != std::string::npos) said.erase(0, error);
+        // What is kept names no folder of this machine.
+        const std::string folder = fs::path(study.file).parent_path() / "";
+        for (std::size_t at = 0; (at = said.find(folder, at)) != std::string::npos;) said.erase(at, folder.size());
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const run::StoredRun run = run::readRun(dir);
