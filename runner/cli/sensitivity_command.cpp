@@ -98,7 +98,8 @@ studies::VariationResult measureNext(Study& study, const Chosen& selection) {
         if (error != std::string::npos) said.erase(0, error);
         // What is kept names no folder of this machine.
         const std::string folder = fs::path(study.file).parent_path() / "";
-        for (std::size_t at = 0; (at = said.find(folder, at)) != std::string::npos;) said.erase(at, folder.size());
+        for (std::size_t at = 0; (at = said.find(folder, at)) != std::string::npos;)
+            said.erase(at, folder.size());
         return {variation, {}, fmt::format("exit code {}: {}", end.exitCode, said)};
     }
     const run::StoredRun run = run::readRun(dir);

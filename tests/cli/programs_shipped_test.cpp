@@ -54,7 +54,8 @@ TEST_F(ShippedPrograms, TheGuidesExampleWorksAsTyped) {
     const std::size_t section = guide.find("## A renderer's pictures");
     const std::size_t begin = guide.find("```yaml mine.yaml\n", section) + 18;
     ASSERT_LT(section, begin);
-    const std::string config = folder.write("mine.yaml", guide.substr(begin, guide.find("```", begin) - begin));
+    const std::string config =
+        folder.write("mine.yaml", guide.substr(begin, guide.find("```", begin) - begin));
     folder.write("configs/external/hall.pov", readFile(configs / "external" / "hall.pov"));
     endedWith(0, gfxrepro({"reproduce", config, "--out", dir}));
     EXPECT_EQ(rowsOf(dir, "wall_time_ms").size(), 18U);

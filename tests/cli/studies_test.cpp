@@ -122,18 +122,6 @@ TEST_F(Sensitivity, GoesOnWhereKeptResultsEnd) {
     EXPECT_THAT(run(other, "c", {}).err, HasSubstr("[1/4] sweep/mock as configured\n"));
 }
 
-TEST_F(Sensitivity, WhatIsKeptOfAnErrorNamesNoFolder) {
-    const std::string keep = folder.path() / "keep";
-    const std::string config = writeMockConfig(
-        folder, std::string(kClaim) + "  pause_ms: {range: [0, 60001], why: left open}\n");
-    std::vector<std::string> command = sensitivityCommand(config, folder.path() / "out");
-    command.insert(command.end(), {"--keep", keep});
-    mockGfxrepro(command);
-    const std::string kept = readFile(keep + "/software-full.csv");
-    EXPECT_THAT(kept, HasSubstr(",exit code 2: gfxrepro: "));
-    EXPECT_THAT(kept, Not(HasSubstr(folder.path())));
-}
-
 TEST_F(Sensitivity, TablesOfTimesAreNamed) {
     const std::string keep = folder.path() / "keep";
     const std::string config =
