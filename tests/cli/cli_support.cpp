@@ -39,8 +39,8 @@ std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder
     return errorText([&] { throw Error(result.err); }, folder.path());
 }
 
-std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
-                                      const std::string& technique) {
+fs::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
+                         const std::string& technique) {
     const bool hasScene = lines.find("scene: ") != lines.npos;
     // Frames stand beside the size.
     constexpr std::string_view kFrames = "output: {frames: ";
@@ -54,21 +54,20 @@ std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));
 }
 
-std::vector<records::Record> rowsOf(const std::filesystem::path& runDir,
-                                    const std::string& metric) {
+std::vector<records::Record> rowsOf(const fs::path& runDir, const std::string& metric) {
     std::vector<records::Record> rows = records::readRecords(runDir / "records.csv");
     std::erase_if(rows, [&](const records::Record& row) { return row.metric != metric; });
     return rows;
 }
 
-std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runDir) {
+std::map<std::string, nlohmann::json> paramsOf(const fs::path& runDir) {
     std::map<std::string, nlohmann::json> params;
     const auto plan = nlohmann::json::parse(readFile(runDir / "plan.json"));
     for (const auto& item : plan["cases"]) params[item["id"]] = item["params"];
     return params;
 }
 
-std::vector<std::string> statusLines(const std::filesystem::path& runDir) {
+std::vector<std::string> statusLines(const fs::path& runDir) {
     std::vector<std::string> lines;
     std::string lastCase;
     const auto params = paramsOf(runDir);

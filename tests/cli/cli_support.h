@@ -33,17 +33,17 @@ ProcessResult endedWith(int exitCode, ProcessResult result, int line = __builtin
 std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder);
 
 /// A config for a mock technique with these lines behind its head.
-std::filesystem::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
-                                      const std::string& technique = "mock");
+fs::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
+                         const std::string& technique = "mock");
 
 /// Rows of a metric.
-std::vector<records::Record> rowsOf(const std::filesystem::path& runDir, const std::string& metric);
+std::vector<records::Record> rowsOf(const fs::path& runDir, const std::string& metric);
 
 /// The parameters of the cases of a run's plan, by id.
-std::map<std::string, nlohmann::json> paramsOf(const std::filesystem::path& runDir);
+std::map<std::string, nlohmann::json> paramsOf(const fs::path& runDir);
 
 /// "value=status message" of every case in order of the rows, by the parameter `behaviour`.
-std::vector<std::string> statusLines(const std::filesystem::path& runDir);
+std::vector<std::string> statusLines(const fs::path& runDir);
 
 /// The processes that this thread started.
 std::vector<pid_t> ownChildren();

@@ -1,6 +1,4 @@
 // A device whose clock is broken: no number of it is believed, and that is said.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <map>
 
@@ -9,8 +7,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-using testing::HasSubstr;
 
 class BrokenClock : public testing::Test {
   protected:
@@ -34,7 +30,7 @@ class BrokenClock : public testing::Test {
                      runOf(clock)},
                     more);
     }
-    std::filesystem::path runOf(const std::string& clock) const { return folder.path() / clock; }
+    fs::path runOf(const std::string& clock) const { return folder.path() / clock; }
 
     TemporaryFolder folder;
 };
@@ -63,7 +59,7 @@ TEST_F(BrokenClock, OneThatBreaksEndsTheCase) {
         EXPECT_EQ(run.exitCode, 4) << clock << run.err;
         EXPECT_TRUE(rowsOf(runOf(clock), "gpu_time_ms").empty()) << clock;
         EXPECT_THAT(readFile(runOf(clock) / "records.csv"),
-                    testing::ContainsRegex("pass '[a-z_]+': the device's clock " + what + ": "));
+                    ContainsRegex("pass '[a-z_]+': the device's clock " + what + ": "));
     }
 }
 
@@ -94,7 +90,7 @@ TEST_F(BrokenClock, OneOfFewBitsIsReadPastItsEnd) {
 
 TEST_F(BrokenClock, DoctorSaysWhatAGoodOneIsWorth) {
     EXPECT_THAT(with("", {"doctor"}).out,
-                testing::ContainsRegex("GPU times of [0-9]+ bits in steps of [1-9][0-9]* ns"));
+                ContainsRegex("GPU times of [0-9]+ bits in steps of [1-9][0-9]* ns"));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // Predictions, shards, merges and submissions of the program, without a cluster.
-#include <gmock/gmock.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -13,11 +12,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 constexpr const char* kLayout =
     "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n";
@@ -104,7 +98,7 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
     EXPECT_THAT(run.err, HasSubstr(" tells\n"));
 }
 
-using Shards = test::FolderTest;
+using Shards = FolderTest;
 
 TEST_F(Shards, MergeToTheTablesOfOneRun) {
     folder.write("own.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1\nv 5 5 5\nf 1 2 3\n");
@@ -286,7 +280,7 @@ TEST(Resume, WithConfigsBeginsOrGoesOn) {
               "gfxrepro: --out and --resume exclude each other: both name the folder\n");
 }
 
-using Submit = test::FolderTest;
+using Submit = FolderTest;
 
 TEST_F(Submit, CommandsMeasureAndMerge) {
     const std::string config = writeMockConfig(

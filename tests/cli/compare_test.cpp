@@ -1,5 +1,4 @@
 // Two builds measured alternately, and two runs compared.
-#include <gmock/gmock.h>
 
 #include <array>
 #include <filesystem>
@@ -9,11 +8,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 class Compare : public ::testing::Test {
   protected:
@@ -149,7 +143,7 @@ TEST_F(Compare, APictureThatChangedIsAnAlarmAndIsKept) {
     EXPECT_THAT(result.out, HasSubstr("alarm; measuring again\n"));
     EXPECT_THAT(result.out, HasSubstr("sweep/mock mock picture/flat, number=1: changed: FLIP "));
     EXPECT_THAT(result.out, HasSubstr("largest difference 0.25 (0 allowed)"));
-    EXPECT_THAT(result.out, testing::Not(HasSubstr("picture/truth: changed"))) << "it is the same";
+    EXPECT_THAT(result.out, Not(HasSubstr("picture/truth: changed"))) << "it is the same";
     std::size_t kept = 0;
     for (const auto& entry : fs::directory_iterator(out + "/pictures/sweep-mock")) {
         kept += entry.path().string().ends_with("-flat-flip.png") ? 1 : 0;

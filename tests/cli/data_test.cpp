@@ -1,7 +1,5 @@
 // Numbers that leave and come in: export --tidy, import, history.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "runner/records/csv.h"
@@ -9,11 +7,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
 
 // A claim that holds, one that fails, a time, a case that fails, and a column a method.
 constexpr const char* kLines =
@@ -135,11 +128,11 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
     const std::string csv =
         folder_.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
     endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")}));
-    EXPECT_THAT(verdicts("theirs"), testing::Contains("slope holds"));
+    EXPECT_THAT(verdicts("theirs"), Contains("slope holds"));
     const std::string flat =
         folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
     EXPECT_EQ(mockGfxrepro({"import", flat, "--config", config, "--out", dir("flat")}).exitCode, 1);
-    EXPECT_THAT(verdicts("flat"), testing::Contains("slope fails"));
+    EXPECT_THAT(verdicts("flat"), Contains("slope fails"));
 }
 
 /// Errors of two samplers that are alike, over seeds: one of them is nearer by chance.
@@ -155,18 +148,18 @@ TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
             text += fmt::format("a,rmse,{},{}\nb,rmse,{},{}\n", 1.0 + 0.1 * (i % 3), 10 * i,
                                 apart + 0.1 * ((i + 1) % 4), 10 * i);
         }
-        std::filesystem::remove_all(dir("s"));
+        fs::remove_all(dir("s"));
         const std::string csv = folder_.write("s.csv", text);
         mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")});
         return verdicts("s");
     };
     for (const char* column : {"seed", "repeat"}) {
-        EXPECT_THAT(verdictOf(column, 8, 1.0), testing::Contains("nearer ambiguous")) << column;
+        EXPECT_THAT(verdictOf(column, 8, 1.0), Contains("nearer ambiguous")) << column;
     }
-    EXPECT_THAT(verdictOf("seed", 8, 1.5), testing::Contains("nearer holds"));
-    EXPECT_THAT(verdictOf("seed", 8, 0.5), testing::Contains("nearer fails"));
-    EXPECT_THAT(verdictOf("seed", 5, 1.5), testing::Contains("nearer ambiguous"));
-    EXPECT_THAT(verdictOf("repeat", 8, 1.5), testing::Contains("nearer ambiguous"));
+    EXPECT_THAT(verdictOf("seed", 8, 1.5), Contains("nearer holds"));
+    EXPECT_THAT(verdictOf("seed", 8, 0.5), Contains("nearer fails"));
+    EXPECT_THAT(verdictOf("seed", 5, 1.5), Contains("nearer ambiguous"));
+    EXPECT_THAT(verdictOf("repeat", 8, 1.5), Contains("nearer ambiguous"));
 }
 
 TEST_F(Data, ASweptSeedIsAParameter) {
@@ -191,7 +184,7 @@ TEST_F(Data, WhatCheckRefusesIsNotImported) {
             mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
         EXPECT_EQ(imported.exitCode, checked.exitCode) << imported.err;
         EXPECT_EQ(imported.err.find(checked.err), 0U) << imported.err;
-        std::filesystem::remove_all(dir("t"));
+        fs::remove_all(dir("t"));
         return checked.err;
     };
     EXPECT_EQ(refusals("printed: {values: \"samples,mse\\n4,0.5\"}\n"), "");
@@ -209,7 +202,7 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
                                           "m,metric,value,unit,pass\na,err,1,1,p\nb,err,2,1,p\n"
                                           "a,t_ms,1,ms,p\nb,t_ms,2,ms,p\na,n,3,1,\nb,n,4,1,\n");
     const auto errorsOf = [&](const std::string& lines) {
-        std::filesystem::remove_all(dir("t"));
+        fs::remove_all(dir("t"));
         const std::string config = folder_.write(
             "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n" + lines);
         const std::string imported =
@@ -237,7 +230,7 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
                               metric));
     }
     EXPECT_THAT(errorsOf("claims: {c: {says: so, bound: errr, at_most: 1}}\n"),
-                testing::StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
+                StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
 }
 
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
@@ -247,7 +240,7 @@ TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
     const std::string config = folder_.write("t.yaml", head + "sweep: {m: [a, b]}\n" + claim);
     endedWith(0, mockGfxrepro({"check", config}));
     endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")}));
-    EXPECT_THAT(verdicts("t"), testing::Contains("c holds"));
+    EXPECT_THAT(verdicts("t"), Contains("c holds"));
     EXPECT_THAT(
         refusal({"check", folder_.write("u.yaml", head + claim)}),
         HasSubstr("axis of order is m; allowed: an axis of 'sweep', or of 'layout: {rows}'"));
@@ -267,9 +260,9 @@ TEST_F(Data, AnImportHasTheFramesOfItsFile) {
     for (const auto& [frame, verdict] : {std::pair("0", "C holds"), {"1", "C fails"}}) {
         const std::string config = configOf(frame);
         endedWith(0, mockGfxrepro({"check", config}));
-        std::filesystem::remove_all(dir("t"));
+        fs::remove_all(dir("t"));
         mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
-        EXPECT_THAT(verdicts("t"), testing::Contains(verdict)) << frame;
+        EXPECT_THAT(verdicts("t"), Contains(verdict)) << frame;
     }
     EXPECT_EQ(refusal({"import", csv, "--config", configOf("2"), "--out", dir("u")}),
               "gfxrepro: DIR/t.yaml:5:59: layout: where.frame is 2; allowed: 0 | 1\n");
@@ -309,7 +302,7 @@ TEST_F(Data, OneValueASideOfAnImportCannotTell) {
 TEST_F(Data, WhatHasNoSeedDrawsNone) {
     const auto verdictOf = [&](const std::string& csv, const std::string& sweep,
                                const std::string& column, const std::string& claim) {
-        std::filesystem::remove_all(dir("t"));
+        fs::remove_all(dir("t"));
         const std::string config = folder_.write(
             "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]" + sweep +
                           "}\nlayout: {rows: m, columns: {c: {" + column +
@@ -361,7 +354,7 @@ TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
     const std::string trials =
         folder_.write("u.csv", "method,trial,metric,value\na,0,e,1\na,1,e,5\nb,0,e,2\nb,1,e,7\n");
     const auto import = [&](const std::string& lines, const std::string& csv) {
-        std::filesystem::remove_all(dir("t"));
+        fs::remove_all(dir("t"));
         const std::string config = folder_.write(
             "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]" + lines);
         return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
@@ -389,7 +382,7 @@ TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
                         trials));
     EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.md"),
                 HasSubstr("Each number is taken over trial (0, 1)."));
-    EXPECT_THAT(verdicts("t"), testing::Contains("c ambiguous"));
+    EXPECT_THAT(verdicts("t"), Contains("c ambiguous"));
 }
 
 /// Of a config whose technique is here, too.
@@ -427,7 +420,7 @@ TEST_F(Data, AColumnMayHaveAnyName) {
         const std::string csv =
             folder_.write("t.csv", fmt::format("m,metric,value\na,{0},1\nb,{0},2\n", metric));
         const auto import = [&](const std::string& bound) {
-            std::filesystem::remove_all(dir("t"));
+            fs::remove_all(dir("t"));
             const std::string config =
                 folder_.write("t.yaml",
                               "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
@@ -436,9 +429,9 @@ TEST_F(Data, AColumnMayHaveAnyName) {
             return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
         };
         endedWith(0, import(metric));
-        EXPECT_THAT(verdicts("t"), testing::Contains("c holds")) << metric;
+        EXPECT_THAT(verdicts("t"), Contains("c holds")) << metric;
         endedWith(0, import(fmt::format("log2 ('{}') + 1", metric)));
-        EXPECT_THAT(verdicts("t"), testing::Contains("c holds")) << metric;
+        EXPECT_THAT(verdicts("t"), Contains("c holds")) << metric;
         EXPECT_THAT(endedWith(2, import(fmt::format("'{}' +", metric))).err,
                     HasSubstr("t.yaml:5:10: claim 'c': ''" + std::string(metric) +
                               "' +' is no expression: "));
@@ -509,8 +502,7 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
 TEST_F(Data, ARunHasItsCasesAsATable) {
     ASSERT_EQ(run(kLines).exitCode, 4);
     endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy", "--out", dir("t")}));
-    EXPECT_THAT(readFile(dir("run") + "/cases.csv"),
-                testing::StartsWith("case_id,experiment,technique,"));
+    EXPECT_THAT(readFile(dir("run") + "/cases.csv"), StartsWith("case_id,experiment,technique,"));
     EXPECT_EQ(readFile(dir("run") + "/cases.csv"), readFile(dir("t") + "/cases.csv"));
 }
 

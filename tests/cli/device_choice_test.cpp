@@ -1,6 +1,4 @@
 // --device: what a run measures on, is said to be measured on, and what it refuses.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -10,10 +8,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 bool hasRealGpu() {
     return std::ranges::any_of(gl::listDevices(), [](const gl::DeviceReport& report) {
@@ -49,7 +43,7 @@ TEST_F(DeviceChoice, TheFirstLineOfARunNamesTheDevice) {
     const ProcessResult run =
         endedWith(0, mockGfxrepro({"run", config, "--device", "software", "--quiet", "--out",
                                    folder.path() / "run"}));
-    EXPECT_THAT(run.err, testing::MatchesRegex("device [0-9]+: .* \\(software\\), OpenGL 4.*\n"));
+    EXPECT_THAT(run.err, MatchesRegex("device [0-9]+: .* \\(software\\), OpenGL 4.*\n"));
     const ProcessResult again = mockGfxrepro({"run", "--resume", folder.path() / "run"});
     EXPECT_EQ(again.err.substr(0, run.err.size()), run.err);
 }

@@ -1,6 +1,4 @@
 // Folders that cannot be written to, and disks that are full.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "engine/core/files.h"
@@ -9,9 +7,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
 
 /// The mock in a shell, where no file can grow beyond `blocks` of 512 bytes: what a full disk looks
 /// like to a program that outlives the signal.
@@ -47,8 +42,8 @@ TEST_F(Disk, AFullDiskLosesNothingMeasured) {
     ASSERT_LT(planBlocks, recordBlocks) << "the test needs records larger than the plan";
     const ProcessResult run = endedWith(
         2, mockWithFullDisk("run " + config + " --device software --out " + full, planBlocks));
-    EXPECT_THAT(run.err, testing::EndsWith("gfxrepro: cannot write " + full +
-                                           "/records.csv: File too large\n"));
+    EXPECT_THAT(run.err,
+                EndsWith("gfxrepro: cannot write " + full + "/records.csv: File too large\n"));
     const std::size_t measured = rowsOf(full, "number").size();
     EXPECT_GT(measured, 0U);
     EXPECT_LT(measured, 40U);
@@ -71,9 +66,9 @@ TEST_F(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
     for (const fs::path& file : {picture, fs::path(dir) / "records.csv"}) fs::remove(file);
     fs::create_directories(picture / "in-the-way");
     for (int i = 0; i < 3; ++i) {  // nor is it taken for what the runner did not survive
-        EXPECT_THAT(endedWith(2, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"})).err,
-                    testing::EndsWith("gfxrepro: cannot rename to " + picture.string() +
-                                      ": Is a directory\n"));
+        EXPECT_THAT(
+            endedWith(2, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"})).err,
+            EndsWith("gfxrepro: cannot rename to " + picture.string() + ": Is a directory\n"));
         EXPECT_TRUE(rowsOf(dir, "number").empty());
     }
     fs::remove_all(picture);
@@ -103,7 +98,7 @@ TEST_F(Disk, AFolderThatCannotBeWrittenIsNamed) {
         endedWith(2, mockGfxrepro({"run", config, "--out", "/proc/gfxrepro/run"}));
     EXPECT_THAT(
         run.err,
-        testing::EndsWith(
+        EndsWith(
             "gfxrepro: cannot make the folder /proc/gfxrepro/run: No such file or directory\n"));
     EXPECT_EQ(run.out, "");
 }

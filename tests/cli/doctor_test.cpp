@@ -1,6 +1,4 @@
 // The advice of `gfxrepro doctor`, each from made-up facts, by its exact words.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -82,7 +80,7 @@ TEST(Doctor, DriverNotLoaded) {
     facts.driverProblems = {"/a.json names the driver libEGL_a.so.0: no such file"};
     EXPECT_THAT(
         linesOf(facts),
-        testing::StartsWith(
+        StartsWith(
             "results driver_not_loaded: A driver cannot be loaded: /a.json names the driver "
             "libEGL_a.so.0: no such file. → Install what it lacks, or the driver anew; where "
             "there is no such device, its file may go.\nresults software_only: "));
@@ -91,7 +89,7 @@ TEST(Doctor, DriverNotLoaded) {
 }
 
 /// Of the drivers that `folder` names, and no others.
-std::vector<std::string> problemsOf(const test::TemporaryFolder& folder) {
+std::vector<std::string> problemsOf(const TemporaryFolder& folder) {
     ::setenv("__EGL_VENDOR_LIBRARY_DIRS", folder.path().c_str(), 1);
     std::vector<std::string> problems = gl::vendorLibraryProblems();
     ::unsetenv("__EGL_VENDOR_LIBRARY_DIRS");
@@ -99,13 +97,13 @@ std::vector<std::string> problemsOf(const test::TemporaryFolder& folder) {
 }
 
 TEST(VendorLibraries, SayWhyADriverCannotBeLoaded) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const std::string driver = R"({"file_format_version":"1.0.0","ICD":{"library_path":"LIB"}})";
     const auto naming = [&](const std::string& library) {
         return std::string(driver).replace(driver.find("LIB"), 3, library);
     };
     folder.write("10_good.json", naming("libm.so.6"));
-    EXPECT_THAT(problemsOf(folder), testing::IsEmpty());
+    EXPECT_THAT(problemsOf(folder), IsEmpty());
     folder.write("20_gone.json", naming("libEGL_gone.so.0"));
     folder.write("30_torn.json", driver.substr(0, 20));
     const std::string libraries = folder.write("no.so", "no library").string();
@@ -117,16 +115,16 @@ TEST(VendorLibraries, SayWhyADriverCannotBeLoaded) {
                                " names the driver libEGL_gone.so.0: libEGL_gone.so.0: cannot open "
                                "shared object file: No such file or directory");
     EXPECT_EQ(problems[1], (folder.path() / "30_torn.json").string() + ": is no JSON object");
-    EXPECT_THAT(problems[2], testing::HasSubstr("no.so: file too short"));
+    EXPECT_THAT(problems[2], HasSubstr("no.so: file too short"));
     EXPECT_EQ(problems[3], (folder.path() / "50_other.json").string() +
                                ": '/ICD/library_path' is number; expected text");
 }
 
 TEST(CppLibrary, ReleaseComesFromTheName) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file = folder.write("libstdc++.so.6.0.30", "");
     EXPECT_EQ(releaseOfCppLibrary(file), 30);
-    std::filesystem::create_symlink(file, folder.path() / "libstdc++.so.6");
+    fs::create_symlink(file, folder.path() / "libstdc++.so.6");
     EXPECT_EQ(releaseOfCppLibrary(folder.path() / "libstdc++.so.6"), 30);
     const auto plain = folder.write("plain/libstdc++.so.6", "copy");
     EXPECT_EQ(releaseOfCppLibrary(plain), 0);
@@ -220,9 +218,8 @@ TEST(Doctor, Assets) {
     facts.missingSceneCount = 2;
     EXPECT_THAT(
         linesOf(facts),
-        testing::HasSubstr(
-            "results missing_scenes: 2 scenes have not even a stand-in: their cases will not "
-            "run. → `gfxrepro describe SCENE` says which file each needs.\n"));
+        HasSubstr("results missing_scenes: 2 scenes have not even a stand-in: their cases will not "
+                  "run. → `gfxrepro describe SCENE` says which file each needs.\n"));
 }
 
 TEST(Doctor, Disk) {

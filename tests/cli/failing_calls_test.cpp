@@ -1,7 +1,6 @@
 // Any call that changes a file fails, or the program is killed there with half of a write done:
 // what was measured stays, and the command that is given again ends as one that nothing befell. A
 // few calls of each command; GFXREPRO_TEST_FAILURES: all of them.
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -15,7 +14,6 @@
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 constexpr int kKilled = -1;

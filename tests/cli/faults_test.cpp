@@ -1,6 +1,4 @@
 // A case that fails becomes a row; its neighbours go on.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,12 +7,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 using Faults = test::RunTest;
 
@@ -276,9 +268,8 @@ TEST_F(Faults, BlankPicturesUnequalWorkAndSuspensionsVoidTimesAndNothingElse) {
     const std::string another =
         "ambiguous: frame 0: repeat 1 drew a different picture than repeat 0";
     const std::string suspended = "ambiguous: frame 0: the process was suspended meanwhile";
-    EXPECT_THAT(messages,
-                testing::UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank, another,
-                                              another, another, suspended, suspended, suspended));
+    EXPECT_THAT(messages, UnorderedElementsAre("ok: ", "ok: ", "ok: ", blank, blank, blank, another,
+                                               another, another, suspended, suspended, suspended));
     for (const records::Record& row : rowsOf(dir, "number"))
         EXPECT_EQ(row.status, records::Status::Ok);
     EXPECT_EQ(rowsOf(dir, "work_image_digest").size(), 12U);
@@ -355,7 +346,7 @@ TEST(Titles, AreRefusedBeforeTheyAreMeasured) {
     EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
     const std::string dir = folder.path() / "run";
     EXPECT_THAT(endedWith(2, mockGfxrepro({"run", config, "--out", dir})).err,
-                testing::EndsWith(why));  // behind the device
+                EndsWith(why));  // behind the device
     EXPECT_FALSE(fs::exists(dir));
     writeMockConfig(folder, "sweep: {marker: [x, " + std::string(4000, 'y') + "]}\n");
     EXPECT_EQ(mockGfxrepro({"check", config}).exitCode, 0);
@@ -387,7 +378,7 @@ TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
               mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
     EXPECT_THAT(readFile(dir + "/claims.csv"),
                 HasSubstr("not among what was measured: 'y' is no column"));
-    EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
+    EXPECT_TRUE(fs::exists(dir + "/tables/sweep-mock.csv"));
 }
 
 TEST_F(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
@@ -398,8 +389,8 @@ TEST_F(Overrides, CheckSaysHowManyCasesOnlyLeaves) {
     EXPECT_EQ(checked("marker=x").out,
               config + ": ok, sweep/mock, 4 cases, 0 claims\n--only leaves 2 of 4 cases\n");
     EXPECT_THAT(endedWith(2, checked("number=3")).err,
-                testing::HasSubstr("no case has that value; there are 1, 2"));
-    EXPECT_THAT(checked("numbr=1").err, testing::HasSubstr("did you mean 'number'?"));
+                HasSubstr("no case has that value; there are 1, 2"));
+    EXPECT_THAT(checked("numbr=1").err, HasSubstr("did you mean 'number'?"));
 }
 
 TEST_F(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
@@ -416,9 +407,9 @@ TEST_F(Overrides, WhatTheyTakeFromPlotsIsLeftOutAndSaidBefore) {
                   ": plot 2 will be left out: 'y' is no column (columns: x)\n");
     endedWith(0,
               mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
-    EXPECT_TRUE(std::filesystem::exists(dir + "/tables/sweep-mock.csv"));
-    EXPECT_TRUE(std::filesystem::exists(dir + "/plots/sweep-mock.svg"));
-    EXPECT_FALSE(std::filesystem::exists(dir + "/plots/sweep-mock-2.svg"));
+    EXPECT_TRUE(fs::exists(dir + "/tables/sweep-mock.csv"));
+    EXPECT_TRUE(fs::exists(dir + "/plots/sweep-mock.svg"));
+    EXPECT_FALSE(fs::exists(dir + "/plots/sweep-mock-2.svg"));
     EXPECT_THAT(readFile(dir + "/report.html"),
                 HasSubstr("not among what was measured: &#39;y&#39; is no column (columns: x)"));
 }
@@ -488,7 +479,7 @@ TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     EXPECT_THAT(index, HasSubstr(",0," + name + ",images/sweep-mock/")) << "its name stays";
     ASSERT_EQ(mockGfxrepro({"report", dir}).exitCode, 0);
     std::size_t count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(dir + "/images/sweep-mock")) {
+    for (const auto& entry : fs::directory_iterator(dir + "/images/sweep-mock")) {
         EXPECT_LE(entry.path().filename().string().size(), 120U);
         ++count;
     }

@@ -1,6 +1,5 @@
 // `gfxrepro image …` on files that the tests write.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -104,7 +103,7 @@ TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
     EXPECT_EQ(images[0].truthOf, "");
     EXPECT_EQ(images[1].name, "truth");
     EXPECT_EQ(images[1].truthOf, "flat");
-    const auto attributes = image::readExr(std::filesystem::path(run) / images[1].exr).attributes;
+    const auto attributes = image::readExr(fs::path(run) / images[1].exr).attributes;
     EXPECT_EQ(attributes.at("command"),
               "gfxrepro run " + config + " --device software --quiet --out '" + run + "'");
     EXPECT_EQ(attributes.at("case"), images[1].caseId);

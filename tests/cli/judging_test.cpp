@@ -1,6 +1,4 @@
 // A run has one verdict on each claim, whichever command judges it and however its scene is named.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,9 +7,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 TEST(Judging, ACauseOfGeneratedScenesIsOfThoseThatWereLoaded) {
     for (const char* lines : {"scene: models/duck\n", "scene: models/duck@3\n",

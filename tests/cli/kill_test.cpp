@@ -2,7 +2,6 @@
 // many), some of them on a disk that is nearly full, some with the write of a unit cut anywhere:
 // nothing measured is lost but what was cut, nothing is left, and the tables end as those of a run
 // that nobody touched.
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <chrono>
@@ -15,8 +14,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr int kMoments = 25;
 constexpr int kMomentsInFolder = 5;

@@ -1,6 +1,5 @@
 // What the program is given is broken at random: it says so, with an exit code that is documented,
 // and neither aborts nor hangs. GFXREPRO_TEST_MUTATIONS: with as many inputs of each kind.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -15,7 +14,6 @@
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 constexpr int kMutations = 40;
@@ -84,7 +82,7 @@ void expectAnswers(const fs::path& file, const std::function<Arguments(std::mt19
     }
 }
 
-using Mutation = test::FolderTest;
+using Mutation = FolderTest;
 
 TEST_F(Mutation, OfConfigs) {
     const fs::path config = writeMockConfig(

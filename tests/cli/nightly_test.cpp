@@ -1,5 +1,4 @@
 // Nights of a fast and a slow build, as scripts/nightly measures them.
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <filesystem>
@@ -11,8 +10,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// To open a device is most of what a short night takes.
 constexpr const char* kTechnique = "mock_on_cpu";

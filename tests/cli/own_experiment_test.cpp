@@ -1,7 +1,5 @@
 // An experiment of who writes five lines: what they give, and what check says of them.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
@@ -16,12 +14,6 @@
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
-
 /// The processes of the rows that are no controls.
 std::set<int> processesOf(const std::vector<records::Record>& rows) {
     std::set<int> processes;
@@ -32,7 +24,7 @@ std::set<int> processesOf(const std::vector<records::Record>& rows) {
     return processes;
 }
 
-using OwnExperiment = test::FolderTest;
+using OwnExperiment = FolderTest;
 
 TEST_F(OwnExperiment, AFewLinesGiveTimesPicturesAndACurve) {
     const std::string config =
@@ -342,7 +334,7 @@ TEST_F(OwnExperiment, CheckAsksTheTechniqueWhetherItTakesTheScene) {
     EXPECT_EQ(endedWith(2, gfxrepro({"scene", points, "--render", picture})).err,
               "gfxrepro: --render " + picture + ": " + points +
                   " has 3 points and no triangles; allowed to draw: triangles\n");
-    EXPECT_FALSE(std::filesystem::exists(picture));
+    EXPECT_FALSE(fs::exists(picture));
     EXPECT_THAT(checked(folder,
                         "technique: voxelization\nscene: shapes/torus\n"
                         "params: {csg: union, scene_b: points.obj, resolution: 32}\n"),
@@ -582,8 +574,8 @@ TEST_F(OwnExperiment, WhatCheckRefusesIsNotMeasured) {
         for (const char* command : {"check", "reproduce"}) {
             const ProcessResult result = gfxrepro({command, file});
             EXPECT_EQ(result.exitCode, 2) << command << lines;
-            EXPECT_THAT(result.err, testing::EndsWith(error)) << command;
-            EXPECT_THAT(result.out, testing::IsEmpty()) << command;
+            EXPECT_THAT(result.err, EndsWith(error)) << command;
+            EXPECT_THAT(result.out, IsEmpty()) << command;
         }
     }
 }

@@ -1,14 +1,11 @@
 // What `check` refuses of a config of one's own program, and what it says.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
-
-using testing::HasSubstr;
 
 /// A program that draws random numbers, of which nothing runs; `images` is that of its picture.
 class OwnProgram : public ::testing::Test {
@@ -132,7 +129,7 @@ TEST_F(OwnProgram, ACaseThatIsTheTruthOfOthersIsSaid) {
     EXPECT_THAT(of("{n: 16}"),
                 HasSubstr("2 cases, sweep/mine pattern=even n=16 the first, are each "
                           "the truth of 'p' ({n: 16}) by itself: "));
-    EXPECT_THAT(of("{n: 64}"), testing::Not(HasSubstr("by itself")));
+    EXPECT_THAT(of("{n: 64}"), Not(HasSubstr("by itself")));
 }
 
 TEST_F(OwnProgram, TheLaneOfTheCommandLineIsThatOfTheTable) {
@@ -161,7 +158,7 @@ TEST_F(OwnProgram, AnArgumentThatIsNotThereIsSaid) {
     EXPECT_THAT(said("beside.py"),
                 HasSubstr("the command's 'beside.py' is a file beside the config, and the program "
                           "runs in {out}; there it is {here}/beside.py\n"));
-    EXPECT_THAT(said("{here}/beside.py"), testing::Not(HasSubstr("the command's")));
+    EXPECT_THAT(said("{here}/beside.py"), Not(HasSubstr("the command's")));
 }
 
 /// What rows a table that nobody laid out has is known with an override, too.
@@ -175,7 +172,7 @@ TEST_F(OwnProgram, AnOverrideLeavesTheRowsThatClaimsCompare) {
     for (const char* given : {"measure.processes=10", "measure.lane=quality"}) {
         const ProcessResult result = gfxrepro({"check", file, "--set", given});
         EXPECT_EQ(result.exitCode, 0) << result.err;
-        EXPECT_THAT(result.out, testing::Not(HasSubstr("unmeasured")));
+        EXPECT_THAT(result.out, Not(HasSubstr("unmeasured")));
     }
 }
 

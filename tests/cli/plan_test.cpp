@@ -1,12 +1,9 @@
 // What a plan of 100,000 cases takes. The program itself, as its techniques have many parameters.
-#include <gtest/gtest.h>
 
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr long long kMostBytes = 2'000'000'000;
 

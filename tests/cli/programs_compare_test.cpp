@@ -1,6 +1,4 @@
 // Two builds of a program of one's own, measured by turns.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
@@ -8,11 +6,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::EndsWith;
-using testing::HasSubstr;
 
 class TwoBuilds : public FolderTest {
   protected:

@@ -1,6 +1,4 @@
 // Programs that give several frames in one run, and which seeds they get.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
@@ -12,10 +10,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 class Frames : public testing::Test {
   protected:

@@ -1,6 +1,4 @@
 // Pictures that programs leave: which part of a picture they are, and in which format.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "engine/image/exr_io.h"
@@ -13,14 +11,12 @@ namespace gfxrepro::test {
 namespace {
 
 using image::ImageF;
-using testing::AllOf;
-using testing::HasSubstr;
 
 class PicturesOfPrograms : public testing::Test {
   protected:
     /// Runs a config whose program leaves the file `made`, of which `truth` is the truth.
     ProcessResult run(const std::string& made, const std::string& truth) const {
-        const std::string ending = std::filesystem::path(made).extension();
+        const std::string ending = fs::path(made).extension();
         const std::string config = folder.write(
             "mine.yaml",
             "sweep_of: mine\ntitle: Mine\noutput: {width: 16, height: 12}\n"
@@ -28,7 +24,7 @@ class PicturesOfPrograms : public testing::Test {
                 made + " {out}/result" + ending + "\n  env: {SIZE: \"{width} {height}\"}\n" +
                 "  images: {result: {file: result" + ending + ", truth: \"{here}/" + truth +
                 "\"}}\n");
-        std::filesystem::remove_all(dir);
+        fs::remove_all(dir);
         return gfxrepro({"run", config, "--out", dir, "--quiet"});
     }
 
@@ -161,7 +157,7 @@ TEST_F(PicturesOfPrograms, LayersThatAreLeftOutAreSaidInTheRunAndTheReport) {
 
 TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
     const auto script = folder.write("tracer.sh", kTracer);
-    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    fs::permissions(script, fs::perms::owner_all);
     const std::string config = folder.write(
         "mine.yaml",
         "sweep_of: patterns\ntitle: Two sampling patterns\n"
@@ -185,14 +181,14 @@ TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
                                }())}));
     EXPECT_THAT(bad.err, HasSubstr(":12:3: claim 'better': 'rmsee' is no column; did you mean "
                                    "'rmse'? (columns: render_ms, "));
-    EXPECT_THAT(bad.err, testing::Not(HasSubstr("render_ms_picture")));
+    EXPECT_THAT(bad.err, Not(HasSubstr("render_ms_picture")));
     endedWith(0, gfxrepro({"check", config}));
     endedWith(0, gfxrepro({"reproduce", config, "--out", dir}));
     EXPECT_THAT(readFile(dir + "/tables/sweep-patterns.csv"),
-                testing::StartsWith("pattern,samples,render_ms_measured"));
+                StartsWith("pattern,samples,render_ms_measured"));
     const std::string claims = readFile(dir + "/claims.csv");
     for (const char* id : {"slope", "better", "faster"}) {
-        EXPECT_THAT(claims, testing::ContainsRegex(std::string("\n") + id + ",[^\n]*,holds,"));
+        EXPECT_THAT(claims, ContainsRegex(std::string("\n") + id + ",[^\n]*,holds,"));
     }
     const std::string page = readFile(dir + "/report.html");
     EXPECT_THAT(page, HasSubstr("PROGRESSIVE_MULTI_JITTER is nearer to its truth than SOBOL in "

@@ -1,16 +1,10 @@
 // The configs of configs/external and GUIDE.md's example, on real programs.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 bool isHere(const std::string& program) {
     return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;

@@ -1,6 +1,4 @@
 // Programs that are measured from outside: what they give, and what becomes of bad ones.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -14,12 +12,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 /// A shell script as a renderer: `renderer.sh BEHAVIOUR NUMBER OUT`, with pictures to copy.
 constexpr const char* kRenderer = R"(#!/bin/sh
@@ -127,16 +119,15 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
     const std::string program = "program '" + folder.path().string() + "/renderer.sh'";
     ASSERT_EQ(lines.size(), 15U);
     EXPECT_EQ(lines[0], "crash: crash (" + program + " ended with SIGSEGV: drawing crash)");
-    EXPECT_THAT(lines[1],
-                testing::StartsWith(
-                    "deep: error (line 1 of its metrics is nested deeper than 200 levels: [["));
+    EXPECT_THAT(
+        lines[1],
+        StartsWith("deep: error (line 1 of its metrics is nested deeper than 200 levels: [["));
     EXPECT_EQ(lines[2], "fails: error (" + program +
                             " ended with exit code 3: drawing fails / no such scene)");
     EXPECT_EQ(lines[3],
               "flatters: error (metric 'peak_memory_bytes' is taken by the runner; a program gives "
               "those of its 'metrics', and cpu_time_ms and gpu_time_ms of a pass)");
-    EXPECT_THAT(lines[4],
-                testing::MatchesRegex("half_picture: error .image 'result': .*result.png: .*"));
+    EXPECT_THAT(lines[4], MatchesRegex("half_picture: error .image 'result': .*result.png: .*"));
     EXPECT_EQ(lines[5], "hangs: timeout (not finished after 2 s (in render))");
     EXPECT_EQ(lines[6], "no_json: error (line 1 of its metrics is no JSON object: number: 1)");
     EXPECT_EQ(lines[7], "no_picture: error (image 'result': there is no file result.png)");
@@ -254,7 +245,7 @@ TEST_F(ExternalProgram, AnArtifactHoldsNoFileThatChangedSince) {
     EXPECT_TRUE(fs::exists(beside + "/renderer.sh"));
     EXPECT_FALSE(fs::exists(beside + "/picture.png"));
     EXPECT_THAT(readFile(artifact + "/ASSETS.md"),
-                testing::ContainsRegex("\\| picture.png \\|  \\| [0-9a-f]+ \\|  \\|"));
+                ContainsRegex("\\| picture.png \\|  \\| [0-9a-f]+ \\|  \\|"));
 }
 
 TEST_F(ExternalProgram, AChangedOneIsNotResumed) {

@@ -1,7 +1,5 @@
 // By which clock programs are judged, when they are timed, what is made of them once, and the seeds
 // of their random numbers.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
@@ -13,12 +11,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 /// `renderer.sh NUMBER OUT`: sleeps 0.24 s ÷ NUMBER, and says what stands in the file `own_ms`.
 constexpr const char* kSleeper = R"(#!/bin/sh
@@ -212,7 +204,7 @@ TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
     other += "  params: {n: 1}\n  images: {result: {file: result.png, truth: {n: 2}}}\n";
     EXPECT_THAT(seedsOf(other), ElementsAre(1, 1001, 2001, 3001, 4001, 5001));
     EXPECT_EQ(readFile(folder.path() / "truths"), "1\n") << "made once";
-    EXPECT_THAT(seedsOf(other + "sweep: {seed: [3, 4]}\n"), Each(testing::AnyOf(3, 4)));
+    EXPECT_THAT(seedsOf(other + "sweep: {seed: [3, 4]}\n"), Each(AnyOf(3, 4)));
 }
 
 /// A built-in technique that declares that it draws them.

@@ -1,6 +1,4 @@
 // A run from config to report, killed, resumed and refused.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <chrono>
@@ -13,10 +11,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::HasSubstr;
 
 std::string smokeConfig() {
     return (fs::path(GFXREPRO_CONFIGS) / "smoke/template.yaml").string();
@@ -87,7 +81,7 @@ TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
     }
     ASSERT_EQ(pictures.size(), 2U);
     const ProcessResult diff = endedWith(0, gfxrepro({"image", "diff", pictures[0], pictures[1]}));
-    EXPECT_THAT(diff.out, testing::ContainsRegex("flip +0(\\.0+)?\n")) << diff.out;
+    EXPECT_THAT(diff.out, ContainsRegex("flip +0(\\.0+)?\n")) << diff.out;
 }
 
 TEST_F(RunCommand, TableThatIsOnlyPrinted) {

@@ -1,5 +1,4 @@
 // What thousands of cases take: reading a run grows with its size, and no faster.
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include <nlohmann/json.hpp>
@@ -9,8 +8,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// CPU time of the programs that this one has waited for.
 double childrenS() {

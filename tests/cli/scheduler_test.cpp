@@ -1,7 +1,5 @@
 // The scheduler in this process, with the mock's workers: what a runner that is held up, or whose
 // files take no more, makes of its cases.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
@@ -18,12 +16,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::UnorderedElementsAre;
 
 /// Does something as soon as a unit has begun.
 class AtBegin : public run::Observer {

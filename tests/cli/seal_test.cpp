@@ -1,6 +1,4 @@
 // Records that are changed after the run, and claims that are.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -10,10 +8,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::Not;
 
 class Seal : public ::testing::Test {
   protected:

@@ -1,18 +1,10 @@
 // What is made of runs for others: how claims depend on assumptions, and artifacts.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 const char* const kClaim =
     "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
@@ -26,7 +18,7 @@ std::vector<std::string> sensitivityCommand(const std::string& config, const std
     return {"sensitivity", config, "--device", "software", "--profile", "full", "--out", out};
 }
 
-using Sensitivity = test::FolderTest;
+using Sensitivity = FolderTest;
 
 TEST_F(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const std::string config = writeMockConfig(folder, kClaim);

@@ -1,6 +1,5 @@
 // Equal cases of two tables are measured once and recorded for both.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <algorithm>
 
@@ -13,10 +12,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// table-<index>.yaml of the mock with these lines.
 std::string writeTable(const TemporaryFolder& folder, const std::string& index,

@@ -1,7 +1,5 @@
 // A run folder that somebody else made: nothing is read or written outside of it, and no text of it
 // is a command.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <map>
@@ -14,11 +12,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::MatchesRegex;
-using testing::Not;
 
 class Untrusted : public ::testing::Test {
   protected:

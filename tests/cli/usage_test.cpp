@@ -1,6 +1,4 @@
 // What the program says to input that it cannot use: exact words, exit code 2.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,15 +13,13 @@
 namespace gfxrepro::test {
 namespace {
 
-using testing::HasSubstr;
-
 std::string refusal(const std::vector<std::string>& arguments, const TemporaryFolder& folder) {
     const ProcessResult result = gfxrepro(arguments);
     EXPECT_EQ(result.out, "");
     return refusalOf(result, folder);
 }
 
-using Usage = test::FolderTest;
+using Usage = FolderTest;
 
 TEST_F(Usage, UnknownCommand) {
     EXPECT_EQ(refusal({"reproduec"}, folder),
@@ -154,13 +150,13 @@ TEST_F(Usage, DescribeMergedPrintsOneFileOfTheSamePlan) {
         HasSubstr("\ncolumns    intensity_mean_non_redundant, intensity_mean_conventional, "))
         << "which claims may name";
     const ProcessResult merged = endedWith(0, gfxrepro({"describe", "xie2017/10", "--merged"}));
-    EXPECT_THAT(merged.out, testing::Not(HasSubstr("extends:")));
+    EXPECT_THAT(merged.out, Not(HasSubstr("extends:")));
     EXPECT_EQ(merged.out.find("# table-10.yaml with all that it extends\ntable: xie2017/10\n"), 0u);
     const std::string file = folder.write("merged.yaml", merged.out);
     std::vector<std::string> tables, files;
-    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    const fs::path configs = GFXREPRO_CONFIGS;
     for (const config::Document& document : config::readDocuments(configs / "documents.yaml")) {
-        for (const auto& entry : std::filesystem::directory_iterator(configs / document.id)) {
+        for (const auto& entry : fs::directory_iterator(configs / document.id)) {
             if (entry.path().extension() != ".yaml") continue;
             tables.push_back(entry.path());
             const std::string out = gfxrepro({"describe", tables.back(), "--merged"}).out;
@@ -215,9 +211,9 @@ TEST_F(Usage, EveryTableOfThePapersNeedsNoRealModel) {
     for (const char* profile : {"quick", "paper"}) {
         std::vector<std::string> arguments = {"check", "--assets", folder.path(), "--profile",
                                               profile};
-        const std::filesystem::path configs = GFXREPRO_CONFIGS;
+        const fs::path configs = GFXREPRO_CONFIGS;
         for (const config::Document& document : config::readDocuments(configs / "documents.yaml")) {
-            for (const auto& file : std::filesystem::directory_iterator(configs / document.id)) {
+            for (const auto& file : fs::directory_iterator(configs / document.id)) {
                 if (file.path().extension() == ".yaml") arguments.push_back(file.path());
             }
         }
@@ -320,7 +316,7 @@ TEST_F(Usage, HelpAndVersionAreCommandsToo) {
               "--help'\n");
     EXPECT_EQ(gfxrepro({"version"}).out, gfxrepro({"--version"}).out);
     EXPECT_THAT(gfxrepro({"--version"}).out,
-                testing::MatchesRegex("gfxrepro [0-9]+\\.[0-9]+\\.[0-9]+ \\(commit [^ ]+\\)\n"));
+                MatchesRegex("gfxrepro [0-9]+\\.[0-9]+\\.[0-9]+ \\(commit [^ ]+\\)\n"));
 }
 
 TEST_F(Usage, TablesAndCasesAreChosenByPatterns) {

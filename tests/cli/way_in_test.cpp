@@ -1,7 +1,5 @@
 // Help, man page and completion: made from the same definitions, checked by the programs they are
 // for.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <sstream>
@@ -10,13 +8,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::IsSupersetOf;
 
 std::vector<std::string> linesOfText(const std::string& text) {
     std::vector<std::string> lines;
@@ -77,7 +68,7 @@ TEST(Help, FitsOnAScreen) {
 TEST(Help, HasEveryCommandInAGroup) {
     const std::string help = gfxrepro({"--help"}).out;
     // CLI11's own group: a command has no place yet (runner/cli/help.cpp).
-    const auto isWithout = testing::Not(HasSubstr("Subcommands"));
+    const auto isWithout = Not(HasSubstr("Subcommands"));
     EXPECT_THAT(help, isWithout);
     for (const auto& command : allCommands()) {
         EXPECT_THAT(help, HasSubstr(" " + command.front() + " "));
@@ -159,7 +150,7 @@ TEST(Completion, OffersWhatTheCommandLineTakes) {
     EXPECT_THAT(completed({"list", "tables", ""}), IsEmpty());
     EXPECT_THAT(completed({"reproduce", "zju2005/2.2", "zju2005/2."}), Contains("zju2005/2.1"));
     EXPECT_THAT(completed({"reproduce", "zju2005/figure-2.8"}), ElementsAre("zju2005/figure-2.8"));
-    EXPECT_THAT(completed({"reproduce", "zju2005/"}), testing::Not(Contains("zju2005/figure-2.8")))
+    EXPECT_THAT(completed({"reproduce", "zju2005/"}), Not(Contains("zju2005/figure-2.8")))
         << "zju2005/2.8 is the same";
     EXPECT_THAT(completed({"run", "--device", "s"}), ElementsAre("software"));
     EXPECT_THAT(completed({"describe", "voxel"}), ElementsAre("voxelization"));
@@ -230,7 +221,7 @@ TEST(Completion, ZshTakesTheScript) {
         "source <('" GFXREPRO_PROGRAM
         "' completion zsh)\n"
         "words=('" GFXREPRO_PROGRAM "' run --profile q) CURRENT=4; _gfxrepro";
-    EXPECT_THAT(answerOf("zsh", script), testing::HasSubstr("-- quick\n"));
+    EXPECT_THAT(answerOf("zsh", script), HasSubstr("-- quick\n"));
 }
 
 // The first line of a config is for editors: no number may depend on it.
@@ -265,8 +256,8 @@ TEST(WayIn, ScenesAreListedWithWhatTheyAreMadeOf) {
         return gfxrepro(command).out;
     };
     EXPECT_THAT(linesOfText(listed({})),
-                IsSupersetOf({testing::ContainsRegex("^models/bunny +stand-in +"),
-                              testing::ContainsRegex("^shapes/torus +generated +")}));
+                IsSupersetOf({ContainsRegex("^models/bunny +stand-in +"),
+                              ContainsRegex("^shapes/torus +generated +")}));
     EXPECT_THAT(listed({"--json"}), HasSubstr("\"state\": \"stand-in\""));
 }
 

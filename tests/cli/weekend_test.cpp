@@ -1,7 +1,5 @@
 // What a run that nobody watches meets: no reader of its progress, a driver that does not answer, a
 // case that takes the runner with it, a device that is gone, a suspended machine.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
 
@@ -15,10 +13,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::HasSubstr;
 
 ProcessResult shell(const std::string& line) {
     return runProgram({"/bin/sh", "-c", line});
@@ -165,8 +159,8 @@ TEST_F(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     for (int i = 0; i < 2; ++i) {
         endedWith(4, mockGfxrepro({"run", "--resume", dir}));
         EXPECT_THAT(statusLines(dir),
-                    testing::Contains("hang: crash (the runner did not survive it, 2 times; "
-                                      "resume with --retry to try it again)"));
+                    Contains("hang: crash (the runner did not survive it, 2 times; "
+                             "resume with --retry to try it again)"));
         EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
     }
     BackgroundProgram again({GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir, "--retry"});
@@ -228,7 +222,7 @@ TEST_F(Weekend, WhatTookTheMachineDownInOneProcessIsNotTriedInTheOthers) {
         EXPECT_EQ(row.status, records::Status::Crash) << "process " << row.process;
     }
     const std::string log = readFile(dir + "/journal.jsonl");
-    EXPECT_THAT(log, testing::Not(HasSubstr("\"process\":2,\"status\":\"timeout\"")));
+    EXPECT_THAT(log, Not(HasSubstr("\"process\":2,\"status\":\"timeout\"")));
 }
 
 TEST_F(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
@@ -245,7 +239,7 @@ TEST_F(Weekend, ATwinOfWhatTookTheMachineDownIsNotTriedEither) {
     const std::string end = ", 2 times; resume with --retry to try it again)";
     EXPECT_THAT(
         statusLines(dir),
-        testing::UnorderedElementsAre(
+        UnorderedElementsAre(
             "hang: crash (the runner did not survive it" + end,
             "hang: crash (the runner did not survive its twin demo2026/1 behaviour=hang" + end,
             "ok: ok", "ok: ok"));
@@ -280,7 +274,7 @@ TEST_F(Weekend, WhatAStopRuleCutShortWasSurvived) {
     stopped({"run", "--resume", dir});
     waitForStarts(dir, 4);
     stopped({"run", "--resume", dir});
-    EXPECT_THAT(statusLines(dir), testing::ElementsAre("throw: error (nothing works)"));
+    EXPECT_THAT(statusLines(dir), ElementsAre("throw: error (nothing works)"));
 }
 
 /// Runs a case of a second, with a limit of two, whose first worker `suspend` holds up for longer.
@@ -296,7 +290,7 @@ void expectNoTimeout(const std::function<void(BackgroundProgram&, pid_t)>& suspe
     ASSERT_EQ(workers.size(), 1U);
     suspend(run, workers.front());
     EXPECT_EQ(run.wait().exitCode, 0);
-    EXPECT_THAT(readFile(dir + "/journal.jsonl"), testing::Not(HasSubstr("retry")));
+    EXPECT_THAT(readFile(dir + "/journal.jsonl"), Not(HasSubstr("retry")));
     EXPECT_EQ(rowsOf(dir, "number").front().status, records::Status::Ok);
 }
 

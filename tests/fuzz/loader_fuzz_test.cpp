@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 #include <malloc.h>
 #include <stb/stb_image_write.h>
 #include <unistd.h>
@@ -97,7 +96,6 @@ std::size_t peakMemoryBytes() {
     return peakBytes - startBytes;
 }
 
-namespace fs = std::filesystem;
 using Load = std::function<void(const fs::path&)>;
 
 constexpr int kMutations = 5;  // of each seed; GFXREPRO_TEST_MUTATIONS: as many
@@ -299,14 +297,14 @@ scene::Scene smallScene() {
 }
 
 TEST(LoaderFuzz, Ply) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     scene::savePly(own.path() / "binary.ply", smallScene());
     own.write("ascii.ply",
               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
               "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
               "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
               "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed :
          seeds("ply", {own.path() / "binary.ply", own.path() / "ascii.ply"})) {
@@ -318,7 +316,7 @@ TEST(LoaderFuzz, Ply) {
 }
 
 TEST(LoaderFuzz, Obj) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     own.write("a.mtl", "newmtl a\nKd 1 0 0\nd 0.5\nNs 10\n");
     const fs::path seed =
         own.write("a.obj",
@@ -327,7 +325,7 @@ TEST(LoaderFuzz, Obj) {
                   "v 1 1 0\nv 0.1 0.1 0\nf 1 2 5 4 3\nf 2 5 3 4\n");
     const fs::path far =
         own.write("far.obj", "v 500000.1 1 2\nv 500000.2 1 2\nv 500000.15 2 2\nv 0 0 0\nf 1 2 3\n");
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& each : seeds("obj", {seed, far})) {
         if (hasExtension(each, {".obj"})) {
@@ -337,7 +335,7 @@ TEST(LoaderFuzz, Obj) {
 }
 
 TEST(LoaderFuzz, OffAndStl) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     std::string binary(80, ' ');
     binary += std::string("\2\0\0\0", 4);
     const float facet[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -354,7 +352,7 @@ TEST(LoaderFuzz, OffAndStl) {
                   "vertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n"),
         own.write("binary.stl", binary)};
     const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : all) {
         for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
@@ -362,7 +360,7 @@ TEST(LoaderFuzz, OffAndStl) {
 }
 
 TEST(LoaderFuzz, Clouds) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     // LAS 1.4: a record before two points of format 8, far from the origin.
     std::string las(375 + 60 + 2 * 38, '\0');
     const auto put = [&](std::size_t at, auto value) {
@@ -389,7 +387,7 @@ TEST(LoaderFuzz, Clouds) {
         own.write("plain.xyz", "2\n# of\n0.5,1,2,255,128,0\n1,nan,2,0,0,1\n")};
     const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
     for (const fs::path& seed : all) EXPECT_FALSE(scene::loadScene(seed).points.colors.empty());
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : all) {
         for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
@@ -409,7 +407,7 @@ constexpr std::string_view kPosedGltf = R"({"asset":{"version":"2.0"},"scenes":[
 "nodes":[{"mesh":0,"skin":0},{"translation":[500000,0,4e6]},{"children":[3]},{"scale":[2,2,2]}]})";
 
 TEST(LoaderFuzz, Gltf) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     scene::saveGlb(own.path() / "a.glb", smallScene());
     const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const std::uint8_t joints[] = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
@@ -420,7 +418,7 @@ TEST(LoaderFuzz, Gltf) {
     own.write("posed triangle.bin", bytes(positions) + bytes(joints) + bytes(weights));
     const fs::path posed = own.write("posed.gltf", kPosedGltf);
     EXPECT_EQ(scene::loadGltf(posed).triangleCount(), 1U);
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb", posed})) {
         if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, work.path());
@@ -433,9 +431,9 @@ TEST(LoaderFuzz, Gltf) {
 }
 
 TEST(LoaderFuzz, Png) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     image::writePng(own.path() / "a.png", image::Image16(9, 5, 3, 1234));
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("png", {own.path() / "a.png"})) {
         fuzz(kReadPng, seed, ++number, work.path());
@@ -443,11 +441,11 @@ TEST(LoaderFuzz, Png) {
 }
 
 TEST(LoaderFuzz, Exr) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     image::ExrImage exr;
     exr.add(image::ImageF(9, 5, 3, 0.5F), {"R", "G", "B"});
     image::writeExr(own.path() / "a.exr", exr);
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
         fuzz(kReadExr, seed, ++number, work.path());
@@ -471,7 +469,7 @@ std::string smallTiff(const std::string& bytes) {
 }
 
 TEST(LoaderFuzz, OtherPictures) {
-    const test::TemporaryFolder own, work;
+    const TemporaryFolder own, work;
     const std::string bytes(4 * 9 * 5 * 3, '\x40');
     stbi_write_jpg((own.path() / "a.jpg").c_str(), 9, 5, 3, bytes.data(), 90);
     const std::string seeds[] = {
@@ -493,7 +491,7 @@ TEST(LoaderFuzz, OtherPictures) {
 }
 
 TEST(LoaderFuzz, Configs) {
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::vector<fs::path> all;
     for (const char* folder : {"smoke", "sweeps", "zju2005"}) {
         for (const auto& entry : fs::directory_iterator(fs::path(GFXREPRO_CONFIGS) / folder)) {
@@ -506,7 +504,7 @@ TEST(LoaderFuzz, Configs) {
 }
 
 TEST(LoaderFuzz, FilesOfRuns) {
-    const test::TemporaryFolder own, work;
+    const TemporaryFolder own, work;
     const fs::path records = own.path() / "records.csv";
     records::Record row;
     row.caseId = "0123456789ab";
@@ -535,12 +533,12 @@ TEST(LoaderFuzz, FilesOfRuns) {
 
 /// Files of quite another kind, given to every loader.
 TEST(LoaderFuzz, AnythingToAnyLoader) {
-    const test::TemporaryFolder own;
+    const TemporaryFolder own;
     const fs::path text = own.write("notes.txt", "v f usemtl ply glTF \x89PNG 1 2 3\n");
     std::vector<fs::path> all = seeds("invalid_misc", {text, own.write("empty", "")});
     const std::vector<fs::path> others = seeds("stl", {});
     all.insert(all.end(), others.begin(), others.end());
-    const test::TemporaryFolder work;
+    const TemporaryFolder work;
     std::uint64_t number = 0;
     for (const fs::path& seed : all) {
         for (const Load& load : {kLoadPly, kLoadObj, kLoadGltf, kReadPng, kReadExr}) {
@@ -551,14 +549,14 @@ TEST(LoaderFuzz, AnythingToAnyLoader) {
 
 /// In a file of zeros each byte is a face: memory for as many triangles would be twelve times it.
 TEST(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     constexpr std::size_t kBytes = 20'000'000;
     const auto path =
         folder.write("a.ply",
                      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
                      "property float y\nproperty float z\nelement face 19000000\n"
                      "property list uchar int vertex_indices\nend_header\n");
-    std::filesystem::resize_file(path, kBytes);  // nearly all of it a hole
+    fs::resize_file(path, kBytes);  // nearly all of it a hole
     resetPeakMemory();
     EXPECT_TRUE(scene::loadPly(path).meshes.empty());
     EXPECT_LE(peakMemoryBytes(), kBytes);

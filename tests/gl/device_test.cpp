@@ -1,4 +1,3 @@
-#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -10,11 +9,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::EndsWith;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
 
 bool hasSoftwareDevice() {
     const std::vector<gl::DeviceReport> reports = gl::listDevices();

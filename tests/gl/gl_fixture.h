@@ -2,8 +2,6 @@
 // written where they are used.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <map>
 #include <string>
 #include <vector>

@@ -1,7 +1,6 @@
 // What files say, drawn and ray-traced beside what they should be: textured, posed, mirrored, far
 // away and concave ones. models_page.png in the build folder's tests/gl shows all three.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
@@ -54,7 +53,7 @@ std::optional<glm::vec3> texelOf(const glm::dvec2& p, bool isMirrored) {
 class ModelsPage : public GlTest {
   protected:
     /// Its three pictures, for the page; the first two have to be the third but at its edges.
-    void show(const std::string& name, const std::filesystem::path& file, const Surface& surface) {
+    void show(const std::string& name, const fs::path& file, const Surface& surface) {
         SCOPED_TRACE(name);
         const scene::Scene model = scene::loadScene(file);
         const scene::Box box = model.bounds();
@@ -102,7 +101,7 @@ class ModelsPage : public GlTest {
     }
 
     void writePage() const {
-        image::writePng(std::filesystem::path(GFXREPRO_TEST_OUTPUT) / "models_page.png",
+        image::writePng(fs::path(GFXREPRO_TEST_OUTPUT) / "models_page.png",
                         image::contactSheet(page_, {3, 3 * kSizePx, 8}, captions_));
     }
 
@@ -163,7 +162,7 @@ class ModelsPage : public GlTest {
 };
 
 TEST_F(ModelsPage, FilesShowWhatTheirMakersMeant) {
-    const std::filesystem::path inputs = GFXREPRO_TEST_INPUTS;
+    const fs::path inputs = GFXREPRO_TEST_INPUTS;
     const auto mirrored = [](const glm::dvec2& p) { return texelOf(p, true); };
     show("mirrored texture", inputs / "sampler_mirror.gltf", mirrored);
     const auto clamped = [](const glm::dvec2& p) { return texelOf(p, false); };

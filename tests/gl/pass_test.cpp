@@ -1,14 +1,9 @@
 #include "engine/gl/pass.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
 namespace {
-
-using ::testing::Each;
-using ::testing::ElementsAre;
 
 class PassTest : public GlTest {
   protected:

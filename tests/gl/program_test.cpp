@@ -1,16 +1,9 @@
 #include "engine/gl/program.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
-using ::testing::StartsWith;
 
 /// Needs no device.
 class ShaderSourceTest : public ::testing::Test {

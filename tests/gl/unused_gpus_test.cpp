@@ -1,18 +1,14 @@
 #include "engine/gl/unused_gpus.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
-
 TEST(UnusedGpus, AreNamedWithWhatIsWrong) {
     const TemporaryFolder folder;
     const fs::path devices = folder.path() / "dev", drivers = folder.path() / "drm";
-    EXPECT_THAT(gl::unusedGpus(devices, drivers), testing::IsEmpty());
+    EXPECT_THAT(gl::unusedGpus(devices, drivers), IsEmpty());
     for (const char* name :
          {"nvidia0", "nvidiactl", "nvidia-uvm", "nvidia-caps/nvidia-cap1", "null", "dri/card0",
           "dri/renderD128", "dri/renderD129", "dri/renderD130", "dri/renderD131", "dxg"}) {
@@ -26,9 +22,9 @@ TEST(UnusedGpus, AreNamedWithWhatIsWrong) {
     bind("renderD129", "nvidia");      // is /dev/nvidia0
     bind("renderD130", "virtio_gpu");  // draws nothing itself
     const std::string at = devices.string();
-    EXPECT_THAT(gl::unusedGpus(devices, drivers),
-                testing::ElementsAre(
-                    at + "/nvidia0: no driver gives an OpenGL device for it",
+    EXPECT_THAT(
+        gl::unusedGpus(devices, drivers),
+        ElementsAre(at + "/nvidia0: no driver gives an OpenGL device for it",
                     at + "/dri/renderD128 (amdgpu): no driver gives an OpenGL device for it",
                     at + "/dri/renderD131: no driver gives an OpenGL device for it",
                     at + "/dxg: no driver gives an OpenGL device for it"));

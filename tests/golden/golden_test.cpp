@@ -1,6 +1,5 @@
 // The smoke configs draw what they drew before. See README.md for how to bless a change.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
@@ -20,8 +19,6 @@
 
 namespace gfxrepro {
 namespace {
-
-namespace fs = std::filesystem;
 
 const fs::path kFolder = fs::path(GFXREPRO_SOURCE) / "tests/golden";
 
@@ -121,7 +118,7 @@ TEST_P(GoldenTest, LooksAsBefore) {
     const Golden golden = GetParam();
     const std::string rasterizer = rasterizerName();
     const fs::path reference = kFolder / rasterizer / fileName(golden);
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path runDir = folder.path() / "run";
     std::vector<std::string> command = {
         GFXREPRO_PROGRAM,

@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -267,7 +266,7 @@ TEST(Bathroom, SameBytesOnEveryMachine) {
 }
 
 TEST(Bathroom, HasNoParameters) {
-    EXPECT_EQ(test::errorText([] { generatedBathroom(1, "{triangles: 48}"); }),
+    EXPECT_EQ(errorText([] { generatedBathroom(1, "{triangles: 48}"); }),
               "t.yaml:1:2: generator 'bathroom': unknown parameter 'triangles'; it has none");
 }
 

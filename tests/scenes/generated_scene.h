@@ -1,8 +1,6 @@
 // What the tests of generated scenes share.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,7 +23,7 @@ inline Scene generated(const std::string& name, const std::string& yaml, std::ui
 
 /// What it says against them.
 inline std::string refusalOf(const std::string& name, const std::string& yaml) {
-    return test::errorText([&] { generated(name, yaml); });
+    return errorText([&] { generated(name, yaml); });
 }
 
 inline const Mesh& meshNamed(const Scene& scene, const std::string& name) {

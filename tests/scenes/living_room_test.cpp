@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -212,10 +211,10 @@ TEST(LivingRoom, SameBytesOnEveryMachine) {
 }
 
 TEST(LivingRoom, BadParametersAreLocated) {
-    EXPECT_EQ(test::errorText([] { room("{diffuse_triangles: 39999}"); }),
+    EXPECT_EQ(errorText([] { room("{diffuse_triangles: 39999}"); }),
               "t.yaml:1:21: generator 'living_room': diffuse_triangles is 39999; allowed: 40000 … "
               "400000");
-    EXPECT_EQ(test::errorText([] { room("{triangles: 9}"); }),
+    EXPECT_EQ(errorText([] { room("{triangles: 9}"); }),
               "t.yaml:1:2: generator 'living_room': unknown parameter 'triangles'; allowed: "
               "diffuse_triangles");
 }

@@ -1,7 +1,5 @@
 // The outdoor generators bird_nest and grass.
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <string>
 

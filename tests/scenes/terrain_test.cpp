@@ -1,7 +1,5 @@
 #include "scenes/terrain/terrain.h"
 
-#include <gtest/gtest.h>
-
 #include "engine/core/files.h"
 #include "tests/support/support.h"
 
@@ -21,7 +19,7 @@ TEST(FractalTerrain, IsTheSameForASeedAndHasItsRelief) {
 }
 
 TEST(FractalTerrain, IsTheSameInAFile) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     FractalTerrain shape;
     shape.sizeSamples = 129;
     const HeightMap expected = fractalTerrain(shape, 5);

@@ -1,6 +1,4 @@
 // What the kept results say of each claim, held against what its config knows of it.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -14,11 +12,11 @@
 #include "runner/claims/kept_claims.h"
 #include "runner/config/experiment.h"
 #include "runner/tables/table.h"
+#include "tests/support/support.h"
 
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
 using Known = config::ClaimSpec::Known;
 
 /// Another tree than its own is looked at where the environment names one.
@@ -134,7 +132,7 @@ TEST(KeptVerdicts, EveryFailingClaimHasAReasonAndNoHoldingOneAStaleOne) {
     const auto all = keptVerdicts(kSource / "results" / "reference");
     ASSERT_GT(all.size(), 100u);
     visitConfigs([&](const config::Experiment& experiment) {
-        EXPECT_THAT(complaints(experiment, all), testing::IsEmpty());
+        EXPECT_THAT(complaints(experiment, all), IsEmpty());
     });
 }
 
@@ -246,7 +244,7 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     const Kept holds{claims::Verdict::Holds, "software", "quick", "h"};
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
     experiment.claims[0].because = {{"fails", "software", std::nullopt, std::nullopt, "r", ""}};
-    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {fails, holds}}}), testing::IsEmpty());
+    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {fails, holds}}}), IsEmpty());
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {holds}}}).size(), 1u);
     experiment.claims[0].because[0].device = "gpu";
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {fails}}}).size(), 1u);
@@ -257,7 +255,7 @@ TEST(KeptVerdicts, WhatDiffersIsFound) {
     Kept real = fails;
     const Kept generated = fails;
     real.scans = {"s"};
-    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {real}}}), testing::IsEmpty());
+    EXPECT_THAT(complaints(experiment, {{{"p/1", "A"}, {real}}}), IsEmpty());
     EXPECT_EQ(complaints(experiment, {{{"p/1", "A"}, {generated}}}).size(), 1u);
     EXPECT_TRUE(isPlain("Ten. 2.5 % of them, at 0.3 m"));
     EXPECT_FALSE(isPlain("One. Two. Three."));

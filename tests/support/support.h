@@ -1,6 +1,7 @@
 // What tests share: temporary folders, exact error texts, real models.
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -65,3 +66,29 @@ std::string errorText(Action&& action, const std::filesystem::path& folder = {})
 }
 
 }  // namespace gfxrepro::test
+
+// The words in which tests are written.
+namespace gfxrepro {
+
+namespace fs = std::filesystem;
+
+using test::errorText;
+using test::FolderTest;
+using test::TemporaryFolder;
+using testing::AllOf;
+using testing::AnyOf;
+using testing::Contains;
+using testing::ContainsRegex;
+using testing::Each;
+using testing::ElementsAre;
+using testing::EndsWith;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::MatchesRegex;
+using testing::Not;
+using testing::Pair;
+using testing::StartsWith;
+using testing::UnorderedElementsAre;
+
+}  // namespace gfxrepro

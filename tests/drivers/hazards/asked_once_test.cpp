@@ -1,7 +1,6 @@
 // Within frames a driver is not asked for what does not change: one that has threads of its own
 // waits for them with each answer.
 #include <dlfcn.h>
-#include <gtest/gtest.h>
 
 #include "tests/gl/gl_fixture.h"
 

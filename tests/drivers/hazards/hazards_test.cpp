@@ -1,16 +1,11 @@
 // The checker finds each hazard where it is, and nothing where it is not.
 #include "tests/drivers/hazards/hazards.h"
 
-#include <gmock/gmock.h>
-
 #include "engine/gl/profiler.h"
 #include "tests/gl/gl_fixture.h"
 
 namespace gfxrepro::test {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 constexpr const char* kWrite = R"(#version 450 core
 layout(local_size_x = 1) in;

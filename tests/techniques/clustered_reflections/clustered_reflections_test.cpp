@@ -17,8 +17,6 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-using test::errorText;
-
 class ClusteredReflectionsTest : public test::TechniqueTest {
   protected:
     ClusteredReflectionsTest() : TechniqueTest(kClusteredReflections, {48, 40}) {}
@@ -76,7 +74,7 @@ TEST_F(ClusteredReflectionsTest, TheTruthOfAFrameIsTracedOnce) {
 
 // Views that were chosen do not tell what a path shows.
 TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
-    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    const fs::path configs = GFXREPRO_CONFIGS;
     for (const char* const profile : {"full", "paper"}) {
         std::set<std::pair<std::string, OwnReflector>> measured;
         for (const config::Case& one : config::expandCases(config::loadExperiment(
@@ -93,9 +91,9 @@ TEST(ReflectionParamsTest, ErrorsOfBothWaysAreMeasuredOnAllCameraPaths) {
 // A table whose numbers do not depend on the depth images may have others than the thesis draws;
 // its page says so.
 TEST(ReflectionParamsTest, TablesNameTheirOwnDepthImages) {
-    const std::filesystem::path configs = GFXREPRO_CONFIGS;
+    const fs::path configs = GFXREPRO_CONFIGS;
     int named = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(configs / "xie2017")) {
+    for (const auto& entry : fs::directory_iterator(configs / "xie2017")) {
         if (entry.path().extension() != ".yaml") continue;
         for (const char* const profile : {"quick", "full", "paper"}) {
             const config::Experiment table =

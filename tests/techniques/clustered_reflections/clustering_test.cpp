@@ -270,7 +270,7 @@ TEST(BinsTest, ThetaRunsFromXTowardsZAndPhiFromY) {
 
 TEST_F(ClusteringTest, TooManyBinsAreRefused) {
     const reflections::ReflectiveScene scene = fourReflectors();
-    EXPECT_EQ(test::errorText([&] {
+    EXPECT_EQ(errorText([&] {
                   ClusterBuilder builder(shaders, scene, Clustering::NormalBins,
                                          {.maxThetaBins = 64, .maxPhiBins = 22}, {8, 8});
               }),

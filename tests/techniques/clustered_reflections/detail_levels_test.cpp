@@ -1,8 +1,6 @@
 // Chunks and levels of detail against what they are made of.
 #include "techniques/clustered_reflections/visible_triangles.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <array>
 

@@ -260,8 +260,8 @@ class MarchTest : public test::GlTest {
     };
 
     MarchTest() {
-        std::filesystem::copy(dataFolder("shaders") / "clustered_reflections",
-                              folder.path() / "clustered_reflections");
+        fs::copy(dataFolder("shaders") / "clustered_reflections",
+                 folder.path() / "clustered_reflections");
         for (const int march : {0, 1}) {
             programs.push_back(program({{"march_test.comp.glsl", kMarchShader}},
                                        {{"MARCH", march}, {"MARCH_LEVELS", kLevels}}));

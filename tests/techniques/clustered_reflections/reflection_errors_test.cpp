@@ -1,8 +1,6 @@
 // Occlusion errors by hand-made cameras.
 #include "techniques/clustered_reflections/reflection_errors.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "tests/techniques/clustered_reflections/room.h"

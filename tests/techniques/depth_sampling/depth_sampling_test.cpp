@@ -14,8 +14,6 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-using test::errorText;
-
 class DepthSamplingTest : public test::TechniqueTest {
   protected:
     using Metrics = std::map<std::string, double>;
@@ -297,7 +295,7 @@ TEST_F(DepthSamplingTest, NothingInViewIsAnError) {
     scene.cameras = {lookingAt({0, 0, 4}, {0, 0, 40})};
     for (const std::string method : {"conventional", "non_redundant", "depth_peeling"}) {
         for (const std::string redundancy : {"pixel", "visibility"}) {
-            EXPECT_EQ(test::errorText([&] {
+            EXPECT_EQ(errorText([&] {
                           run("{method: " + method + ", redundancy: " + redundancy +
                                   ", view_spread: 0, usefulness: true, availability: true, "
                                   "output_frames: 2}",

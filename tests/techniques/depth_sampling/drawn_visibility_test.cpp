@@ -1,5 +1,4 @@
 // Redundancy by visibility as it is drawn, against rays.
-#include <gtest/gtest.h>
 
 #include "techniques/depth_sampling/visibility.h"
 #include "tests/techniques/kit/depth_image_fixture.h"

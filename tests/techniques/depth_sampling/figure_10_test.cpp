@@ -1,5 +1,4 @@
 // [xie2017] Fig. 10: where a sample s₁ of I₁ lands on I₀, and by which definition it is redundant.
-#include <gtest/gtest.h>
 
 #include "engine/core/files.h"
 #include "engine/raycast/ray_tracer.h"

@@ -1,5 +1,4 @@
 // Measures on the device against double loops on the CPU, and against answers known beforehand.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 

@@ -1,8 +1,6 @@
 // Where reference images and output frames are taken from.
 #include "techniques/depth_sampling/reference_views.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include <glm/gtc/constants.hpp>
@@ -144,7 +142,7 @@ TEST(ReferenceViewsTest, CandidatesBeginWithTheFixedViewsAndAreNoOutputFrames) {
 TEST(ReferenceViewsTest, RefusesToLookAlongUp) {
     scene::Scene scene = boxScene({-1, 0, -2}, {1, 2, 2});
     scene.cameras[0].position = {0, 9, 0};
-    EXPECT_EQ(test::errorText([&] { makeViewTriangle(scene, {}); }),
+    EXPECT_EQ(errorText([&] { makeViewTriangle(scene, {}); }),
               "the camera at (0, 9, 0) looks along its up direction; change 'view' or "
               "'view_pitch_deg'");
 }

@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cctype>
 #include <optional>
@@ -13,8 +11,6 @@
 
 namespace gfxrepro::external {
 namespace {
-
-using test::errorText;
 
 TEST(Patterns, TakeTheirLastMatch) {
     const config::ProgramPattern pattern{"rays", "^Rays: +([0-9.eE+-]+)"};
@@ -88,7 +84,7 @@ TEST(Patterns, WhatMovesTheCursorPartsNumbers) {
     EXPECT_EQ(numberOf(digits, "m=5\x1b[>4;1m6"), 56.0);
     EXPECT_EQ(numberOf(digits, "m=5\x1b[4"), 5.0);
     EXPECT_THAT(errorOfPattern(digits, "m=12\x1b(B\x1b[m.5"),  // as of `tput sgr0`
-                testing::HasSubstr("finds '12' of '12.5'"));
+                HasSubstr("finds '12' of '12.5'"));
 }
 
 TEST(Patterns, ReadWhatIsWholeOrWhoseNeighboursTheyName) {

@@ -1,6 +1,5 @@
 #include "techniques/external/process.h"
 
-#include <gtest/gtest.h>
 #include <signal.h>
 
 #include <chrono>
@@ -12,9 +11,6 @@
 namespace gfxrepro::external {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
-
 ProcessEnd runShell(const TemporaryFolder& folder, const std::string& script,
                     std::vector<std::pair<std::string, std::string>> environment = {}) {
     return runProcess({{"/bin/sh", "-c", script},
@@ -23,7 +19,7 @@ ProcessEnd runShell(const TemporaryFolder& folder, const std::string& script,
                        folder.path() / "metrics.jsonl"});
 }
 
-using Process = test::FolderTest;
+using Process = FolderTest;
 
 TEST_F(Process, SaysHowItEnded) {
     EXPECT_EQ(whyEnded(runShell(folder, "true").waitStatus), "");
@@ -70,7 +66,7 @@ TEST_F(Process, KilledAsMemoryRanOutItSaysSo) {
         };
         EXPECT_TRUE(inGroup("exit 1"));
         EXPECT_FALSE(inGroup("exit 0")) << "it went on without";
-        std::filesystem::remove_all(folder.path() / "sys");
+        fs::remove_all(folder.path() / "sys");
     }
 }
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <limits>
@@ -13,9 +12,6 @@
 
 namespace gfxrepro::external {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 std::vector<GivenMetric> metricsOf(const std::string& text, int frame = 0) {
     const TemporaryFolder folder;
@@ -117,30 +113,27 @@ TEST(MetricLines, RefusesAFileThatIsGoneOrNoPlainOne) {
     const std::string notPlain =
         "its file of metrics, metrics.jsonl, is no plain file any more; it is there to be added to";
     EXPECT_EQ(error(), notPlain);
-    std::filesystem::remove(file);
-    std::filesystem::create_symlink(folder.write("other", ""), file);
+    fs::remove(file);
+    fs::create_symlink(folder.write("other", ""), file);
     EXPECT_EQ(error(), notPlain);
 }
 
 using image::ImageF;
-using test::errorText;
-using test::TemporaryFolder;
 
-std::filesystem::path writeExr(const TemporaryFolder& folder, const std::string& name,
-                               const ImageF& image) {
+fs::path writeExr(const TemporaryFolder& folder, const std::string& name, const ImageF& image) {
     image::ExrImage exr;
     exr.add(image, {"R", "G", "B"}, image::ExrPixelType::Float);
     image::writeExr(folder.path() / name, exr);
     return folder.path() / name;
 }
 
-std::filesystem::path writePng(const TemporaryFolder& folder, const std::string& name, int width,
-                               std::uint8_t value) {
+fs::path writePng(const TemporaryFolder& folder, const std::string& name, int width,
+                  std::uint8_t value) {
     image::writePng(folder.path() / name, image::Image8(width, 16, 3, value));
     return folder.path() / name;
 }
 
-using Pictures = test::FolderTest;
+using Pictures = FolderTest;
 
 /// As it is compared, and what is recorded: sRGB 0.4 in linear light.
 TEST_F(Pictures, APngIsComparedAsItIsStored) {
@@ -161,7 +154,7 @@ TEST_F(Pictures, GreyKeepsItsAlpha) {
 }
 
 TEST_F(Pictures, RefusesHalfAndWrongOnes) {
-    const auto errorOf = [&](const std::filesystem::path& file, glm::ivec2 size = {0, 0}) {
+    const auto errorOf = [&](const fs::path& file, glm::ivec2 size = {0, 0}) {
         return errorText([&] { readPicture(file, "image 'result'", size); }, folder.path());
     };
     EXPECT_EQ(errorOf(folder.path() / "none.exr"), "image 'result': there is no file none.exr");
@@ -187,7 +180,7 @@ TEST_F(Pictures, RefusesHalfAndWrongOnes) {
 }
 
 TEST_F(Pictures, MayBeLinks) {
-    std::filesystem::create_symlink(writePng(folder, "p.png", 16, 51), folder.path() / "link.png");
+    fs::create_symlink(writePng(folder, "p.png", 16, 51), folder.path() / "link.png");
     EXPECT_EQ(readPicture(folder.path() / "link.png", "image 'result'").stored.width(), 16);
 }
 

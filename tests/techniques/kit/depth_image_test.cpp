@@ -7,8 +7,6 @@
 namespace gfxrepro::kit {
 namespace {
 
-using test::errorText;
-
 constexpr int kSizePx = 16;
 
 /// A square of side 4 across the view from +z at height z, facing +z; it fills the view.

@@ -1,8 +1,6 @@
 // What a preprocess made is made once, however many processes ask for it at once.
 #include "techniques/kit/kept_file.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -12,8 +10,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Maker {
     fs::path path;

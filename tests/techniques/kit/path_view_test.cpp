@@ -1,7 +1,5 @@
 #include "techniques/kit/path_view.h"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
 
 #include "scenes/shared/mesh_builder.h"
@@ -81,8 +79,8 @@ TEST(PathView, FramesTheSceneFromAnyDirection) {
     EXPECT_TRUE(isAlong("-90 -30", {-std::sqrt(0.75F), -0.5F, 0}));
     EXPECT_TRUE(isAlong("10 90", {0, 1, 0}));
     EXPECT_EQ(stillCamera(box(), "0 -90", 1.0F).up, glm::vec3(0, 0, -1));
-    EXPECT_THAT(test::errorText([] { stillCamera(box(), "0 91", 1.0F); }),
-                testing::StartsWith("the scene has no path or camera '0 91'"));
+    EXPECT_THAT(errorText([] { stillCamera(box(), "0 91", 1.0F); }),
+                StartsWith("the scene has no path or camera '0 91'"));
 }
 
 TEST(PathView, LooksFromAPointToAnotherAndAlongAPathOfThem) {
@@ -98,22 +96,22 @@ TEST(PathView, LooksFromAPointToAnotherAndAlongAPathOfThem) {
     EXPECT_EQ(cameraAtTime(box(), path, 1.0, 1.0F).target, glm::vec3(0, 0, 2));
     for (const char* wrong :
          {"1 2 > 0 0 0", "1 2 3 > 0 0 0 0", "1 2 3 >", "1 2 3 > 0 0 0;", "1 2 3 > 0 0 0 > 1 1 1"}) {
-        EXPECT_THAT(test::errorText([&] { stillCamera(box(), wrong, 1.0F); }),
-                    testing::StartsWith("the scene has no path or camera '"))
+        EXPECT_THAT(errorText([&] { stillCamera(box(), wrong, 1.0F); }),
+                    StartsWith("the scene has no path or camera '"))
             << wrong;
     }
-    EXPECT_EQ(test::errorText([] { stillCamera(box(), "0 0 8 > 0 0 0; 1 2 3 > 1 2 3", 1.0F); }),
+    EXPECT_EQ(errorText([] { stillCamera(box(), "0 0 8 > 0 0 0; 1 2 3 > 1 2 3", 1.0F); }),
               "view '0 0 8 > 0 0 0; 1 2 3 > 1 2 3': from 1 2 3 to the same point; allowed: to "
               "another one");
 }
 
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
-    EXPECT_EQ(test::errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
+    EXPECT_EQ(errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
               "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "
               "'front', 'side', 'round'; or 'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' "
               "from and to, with more such behind ';' a path");
     EXPECT_EQ(
-        test::errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
+        errorText([] { cameraFor(box(), "back", 0, 1, 1.0F); }),
         "the scene has no path or camera 'back'; paths: none; cameras: none; or 'AZIMUTH "
         "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a path");
 }

@@ -1,7 +1,5 @@
 #include "techniques/kit/prefix_sum.h"
 
-#include <gtest/gtest.h>
-
 #include <vector>
 
 #include "engine/core/random.h"

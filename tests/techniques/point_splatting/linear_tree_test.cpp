@@ -1,7 +1,5 @@
 #include "techniques/point_splatting/point_model.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
@@ -111,7 +109,7 @@ TEST(LinearTree, TakesOnePointEqualPointsAndRefusesNone) {
     equal.normals.assign(1000, {0, 1, 0});
     equal.radii.assign(1000, 0.5F);
     EXPECT_EQ(buildModel(equal, {}).positions.size(), 1000U);
-    EXPECT_EQ(test::errorText([] { buildModel({}, {}); }), "a point model of no points");
+    EXPECT_EQ(errorText([] { buildModel({}, {}); }), "a point model of no points");
 }
 
 TEST(LinearTree, OppositeNormalsGiveAConeOfAnyDirection) {

@@ -1,7 +1,5 @@
 #include "techniques/point_splatting/point_model.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -26,7 +24,7 @@ scene::PointCloud cloud() {
 }
 
 TEST(ModelFile, IsFoundAgainWithTheSameContent) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const ModelFile built = ModelFile::openOrBuild(folder.path(), cloud(), {});
     EXPECT_TRUE(built.wasBuilt());
     const ModelFile found = ModelFile::openOrBuild(folder.path(), cloud(), {});
@@ -56,15 +54,15 @@ TEST(ModelFile, OtherPointsOrSettingsAreOtherFiles) {
 }
 
 TEST(ModelFile, IsBuiltAgainWhereCutOffOrOfAnotherVersion) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     (void)ModelFile::openOrBuild(folder.path(), cloud(), {});
     const auto path = folder.path() / (ModelFile::keyOf(cloud(), {}) + ".points");
-    const auto size = std::filesystem::file_size(path);
+    const auto size = fs::file_size(path);
     for (const std::uintmax_t kept : {size - 64, std::uintmax_t{100}, std::uintmax_t{0}}) {
-        std::filesystem::resize_file(path, kept);
+        fs::resize_file(path, kept);
         const ModelFile again = ModelFile::openOrBuild(folder.path(), cloud(), {});
         EXPECT_TRUE(again.wasBuilt()) << kept;
-        EXPECT_EQ(std::filesystem::file_size(path), size);
+        EXPECT_EQ(fs::file_size(path), size);
     }
     {
         std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
@@ -76,7 +74,7 @@ TEST(ModelFile, IsBuiltAgainWhereCutOffOrOfAnotherVersion) {
 }
 
 TEST(ModelFile, IsBuiltAgainWhereItsCountsLie) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const ModelFile first = ModelFile::openOrBuild(folder.path(), cloud(), {});
     const auto path = folder.path() / (ModelFile::keyOf(cloud(), {}) + ".points");
     const std::vector<CompressedPoint> points(first.compressed().begin(), first.compressed().end());
@@ -109,7 +107,7 @@ TEST(ModelFile, IsBuiltAgainWhereItsCountsLie) {
 }
 
 TEST(ModelFile, StaysInMemoryWhereItCannotBeWritten) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file = folder.path() / "a file";
     std::ofstream(file) << "x";
     const ModelFile model = ModelFile::openOrBuild(file / "below", cloud(), {});

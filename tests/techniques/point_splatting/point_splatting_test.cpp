@@ -17,8 +17,6 @@
 namespace gfxrepro::point_splatting {
 namespace {
 
-using test::errorText;
-
 /// A sphere with bumps: patches of every orientation, some curved.
 scene::Scene bumpySphere(int count) {
     scene::Scene scene;
@@ -358,7 +356,7 @@ TEST_F(PointSplattingTest, CacheIsTakenAndGivesTheSameImage) {
     EXPECT_EQ(first.metrics.count("preprocess_ms/built"), 1U);
     EXPECT_EQ(second.metrics.count("preprocess_ms/mapped"), 1U);
     EXPECT_EQ(difference(first.images.at("image"), second.images.at("image")), std::pair(0, 0.0F));
-    EXPECT_FALSE(std::filesystem::is_empty(folder.path() / "gfxrepro" / "points"));
+    EXPECT_FALSE(fs::is_empty(folder.path() / "gfxrepro" / "points"));
 }
 
 TEST_F(PointSplattingTest, RepairsBadPointsAndSaysSo) {

@@ -105,7 +105,7 @@ inline glm::dvec3 shadedReference(const glm::dvec3& color, const glm::dvec3& nor
 class SplatTest : public test::GlTest {
   protected:
     static ModelFile modelOf(const scene::PointCloud& points) {
-        const test::TemporaryFolder kept;  // a mapped file outlives its name
+        const TemporaryFolder kept;  // a mapped file outlives its name
         return ModelFile::openOrBuild(kept.path(), points, {});
     }
     Picture render(SplatRenderer& renderer, const std::vector<DrawnPatch>& drawn,

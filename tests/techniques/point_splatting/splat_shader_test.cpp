@@ -11,8 +11,7 @@ namespace {
 class SplatShaderTest : public SplatTest {
   protected:
     SplatShaderTest() {
-        std::filesystem::copy(dataFolder("shaders") / "point_splatting",
-                              folder.path() / "point_splatting");
+        fs::copy(dataFolder("shaders") / "point_splatting", folder.path() / "point_splatting");
     }
 };
 

@@ -1,6 +1,5 @@
 // The gather on the device, against mirrors that can be worked out by hand: where the key frame
 // sees what a sample of the new view reflects.
-#include <gtest/gtest.h>
 
 #include "techniques/reflection_reuse/reprojection.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"

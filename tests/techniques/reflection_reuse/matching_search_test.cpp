@@ -1,5 +1,4 @@
 // The search on the host, and the distance that it descends ([xie2017] Sec. 5.4.1).
-#include <gtest/gtest.h>
 
 #include "tests/techniques/reflection_reuse/host_matcher.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"

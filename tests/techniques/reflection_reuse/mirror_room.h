@@ -1,8 +1,6 @@
 // A room with a mirror for a wall, rendered by reuse and, for truth, traced.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 

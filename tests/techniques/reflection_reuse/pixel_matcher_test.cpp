@@ -1,6 +1,5 @@
 // Algorithm 9 of [xie2017] on the device, against mirrors that can be worked out by hand and
 // against the search on the host.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 

@@ -13,8 +13,6 @@
 namespace gfxrepro::reflection_reuse {
 namespace {
 
-using test::errorText;
-
 scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
     return {.position = position, .target = target, .verticalFovRad = 0.9F};
 }

@@ -1,8 +1,6 @@
 // Shift and warp of key frames made by hand.
 #include "techniques/reflection_reuse/reprojection.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <optional>
 

@@ -1,8 +1,6 @@
 // Algorithm 8 in a room with mirrors, against rays traced from every sample.
 #include "techniques/reflection_reuse/reuse_renderer.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/techniques/reflection_reuse/mirror_room.h"
 #include "tests/techniques/reflections/gl_calls.h"
 

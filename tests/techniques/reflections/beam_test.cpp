@@ -1,6 +1,5 @@
 // What reflected rays cover on their way: beam.glsl, HostGBuffer::beam() and what planes and balls
 // do.
-#include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,8 +1,6 @@
 // Composite against its formula on the host.
 #include "techniques/reflections/frame.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {

@@ -1,5 +1,4 @@
 // Environment maps in a room whose walls glow in known colours.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>

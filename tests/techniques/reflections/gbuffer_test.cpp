@@ -1,8 +1,6 @@
 // The G-buffer against rays of Embree through the pixels' centres.
 #include "techniques/reflections/gbuffer.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/image/srgb.h"

@@ -1,5 +1,4 @@
 // The glossy lobe and octahedral directions: shaders against the host, and what both should be.
-#include <gtest/gtest.h>
 
 #include <cmath>
 

@@ -152,8 +152,7 @@ class ReflectionsTest : public test::GlTest {
     gl::Pass compute(const std::string& include, const std::string& members,
                      const std::string& body, const gl::Defines& defines = {}) const {
         // The library takes one folder: the shader goes next to copies of what it includes.
-        for (const auto& entry :
-             std::filesystem::directory_iterator(shaders.folder() / "reflections")) {
+        for (const auto& entry : fs::directory_iterator(shaders.folder() / "reflections")) {
             folder.write("reflections/" + entry.path().filename().string(), readFile(entry.path()));
         }
         std::string text = "#version 450 core\n#include \"reflections/" + include + ".glsl\"\n";

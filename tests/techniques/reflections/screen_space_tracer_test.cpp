@@ -1,7 +1,5 @@
 #include "techniques/reflections/reflection_tracer.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <optional>
 

@@ -1,5 +1,4 @@
 // shaders/shading.glsl and objects.glsl against surfaces.cpp: the same light everywhere.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,8 +1,6 @@
 // Scenes prepared for reflections: what reflects, what is repaired and left out, how it is shaded.
 #include "techniques/reflections/surfaces.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
@@ -12,8 +10,6 @@
 
 namespace gfxrepro::reflections {
 namespace {
-
-using test::errorText;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 

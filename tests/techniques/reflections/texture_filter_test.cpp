@@ -1,8 +1,6 @@
 // Levels of textures, and what is read of them over a footprint.
 #include "techniques/reflections/surfaces.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -1,5 +1,4 @@
 // Every tracer writes the samples that are wanted, and leaves the others alone.
-#include <gtest/gtest.h>
 
 #include <functional>
 #include <string>

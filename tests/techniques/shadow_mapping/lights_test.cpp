@@ -1,8 +1,6 @@
 // Views of lights, their errors, and the steps as declared.
 #include "techniques/shadow_mapping/lights.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <glm/gtc/constants.hpp>
 #include <limits>
@@ -16,11 +14,11 @@ namespace {
 constexpr scene::Box kBounds{glm::vec3(-2.0F, 0.0F, -2.0F), glm::vec3(2.0F, 1.0F, 2.0F)};
 
 std::string errorOf(const Light& light, const scene::Box& bounds = kBounds, int sizePx = 64) {
-    return test::errorText([&] { viewsOf(light, bounds, sizePx); });
+    return errorText([&] { viewsOf(light, bounds, sizePx); });
 }
 
 std::string errorOf(const ShadowMapSettings& settings) {
-    return test::errorText([&] { declaredSteps(settings); });
+    return errorText([&] { declaredSteps(settings); });
 }
 
 TEST(Lights, DegenerateLightsAreRefused) {

@@ -10,8 +10,6 @@
 namespace gfxrepro::shadow_mapping {
 namespace {
 
-using test::errorText;
-
 /// A plate that floats over a floor.
 scene::Scene plateOverFloor() {
     scene::MeshBuilder builder;

@@ -1,5 +1,4 @@
 // Shadow terms of a square above a plane, whose shadow is known, with all lights and filters.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -278,10 +277,10 @@ TEST_F(ShadowMapsTest, MapsBeyondTheDeviceAndTooManyLightsAreRefused) {
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
     ShadowMapRenderer maps(shaders, {.sizePx = limit + 1});
-    EXPECT_EQ(test::errorText([&] { maps.render(scene, std::vector<Light>{spotLight()}); }),
+    EXPECT_EQ(errorText([&] { maps.render(scene, std::vector<Light>{spotLight()}); }),
               "a 2D texture of " + std::to_string(limit + 1) +
                   " pixels is beyond this device's GL_MAX_TEXTURE_SIZE = " + std::to_string(limit));
-    EXPECT_EQ(test::errorText([&] { maps.render(scene, std::vector<Light>(5, spotLight())); }),
+    EXPECT_EQ(errorText([&] { maps.render(scene, std::vector<Light>(5, spotLight())); }),
               "5 lights with shadows: at most 4");
 }
 

@@ -424,7 +424,7 @@ TEST_F(HybridTest, NormalsBeyondAStorageBlockAreRefused) {
     scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(1.0F));
     gl::DeviceLimits limits = device().limits();
     limits.maxStorageBlockBytes = 191;
-    EXPECT_EQ(test::errorText([&] { triangleNormals(mesh, limits); }),
+    EXPECT_EQ(errorText([&] { triangleNormals(mesh, limits); }),
               "the normals of 12 triangles take 192 bytes; the device's storage blocks hold 191");
     limits.maxStorageBlockBytes = 192;
     const auto normals = triangleNormals(mesh, limits).read<glm::vec4>(12);

@@ -2,7 +2,6 @@
 #include "techniques/soft_shadows/soft_shadows.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <cmath>
 #include <map>
@@ -13,8 +12,6 @@
 
 namespace gfxrepro::soft_shadows {
 namespace {
-
-using test::errorText;
 
 class SoftShadowsTest : public test::TechniqueTest {
   protected:
@@ -163,7 +160,7 @@ TEST_F(SoftShadowsTest, APictureOfNothingIsRefusedAndTheShareOfOneIsRecorded) {
     scene.cameras[1].position = {0.5F, 2.0F, 2.5F};
     EXPECT_GT(run("geometry", "ground: false, view: near", scene).at("coverage_pct"), without);
     EXPECT_THAT(errorText([&] { run("geometry", "view: back", scene); }),
-                testing::StartsWith("the scene has no path or camera 'back'"));
+                StartsWith("the scene has no path or camera 'back'"));
     scene.cameras[0].target = {1.0F, 9.0F, 4.0F};  // up and away
     for (const std::string method : {"geometry", "non_redundant", "ray_traced"}) {
         EXPECT_EQ(errorText([&] { run(method, "", scene); }),

@@ -2,7 +2,6 @@
 #include "techniques/template/template.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
@@ -92,7 +91,7 @@ TEST_F(TemplateTest, APathHasAViewAFrame) {
     const double beside = recorded(path, &scene, 1, 2).metrics["mean_brightness"];
     EXPECT_GT(beside, 0.0);
     EXPECT_GT(before, 1.5 * beside);
-    EXPECT_EQ(test::errorText([] {
+    EXPECT_EQ(errorText([] {
                   Params params = test::paramsOf(kTemplate, "{method: gradient}");
                   kTemplate.create(params)->requireFrames(2);
               }),
@@ -100,15 +99,14 @@ TEST_F(TemplateTest, APathHasAViewAFrame) {
 }
 
 TEST_F(TemplateTest, ASilhouetteNeedsTriangles) {
-    EXPECT_EQ(test::errorText([&] { recorded("{method: silhouette}", nullptr); }),
+    EXPECT_EQ(errorText([&] { recorded("{method: silhouette}", nullptr); }),
               "the technique needs a scene, and the case has none");
     Params params = test::paramsOf(kTemplate, "{method: silhouette, view: walk}");
     const auto technique = kTemplate.create(params);
     scene::MeshBuilder builder;
     builder.addQuad({0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0});
     const scene::Scene scene = scene::sceneOf(builder.take("plate", -1));
-    EXPECT_THAT(test::errorText([&] { technique->requireScene(scene); }),
-                testing::HasSubstr("'walk'"));
+    EXPECT_THAT(errorText([&] { technique->requireScene(scene); }), HasSubstr("'walk'"));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST_F(TerrainTest, PagesHoldTheSamplesOfTheirTilesAndABorder) {
 }
 
 TEST_F(TerrainTest, PagesOfAFileAreThoseOfTheSameHeightsInMemory) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     scene::HeightMap coarse = roughMap(65, 40.0F);
     coarse.sizeSamples = {65, 50};  // tiles reach beyond the map
     coarse.heightsM.resize(65 * 50);
@@ -120,7 +120,7 @@ TEST_F(TerrainTest, FewPagesDrawThePictureOfMany) {
 
 TEST_F(TerrainTest, RefusesABudgetThatHoldsNoTile) {
     makeTerrain(roughMap(257, 1.0F));
-    EXPECT_EQ(test::errorText([&] { DeviceTerrain(map, *metadata, kPageBytes / 2); }),
+    EXPECT_EQ(errorText([&] { DeviceTerrain(map, *metadata, kPageBytes / 2); }),
               "0.01 MiB for heights hold no tile of 68 × 68; allowed: 0.02 MiB or more");
 }
 

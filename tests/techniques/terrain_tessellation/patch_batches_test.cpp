@@ -1,8 +1,6 @@
 // Draw calls for a software rasterizer: nothing is left out, and only small calls are clipped.
 #include "techniques/terrain_tessellation/patches.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <numeric>
 

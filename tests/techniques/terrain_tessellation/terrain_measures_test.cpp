@@ -1,8 +1,6 @@
 // Measures of terrain pictures on depth maps whose errors and cracks are known, and the views.
 #include "techniques/terrain_tessellation/terrain_measures.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/image/resample.h"
@@ -196,7 +194,7 @@ TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     camera.position = {1.0F, 2.0F, 3.0F};
     scene.cameras.push_back(camera);
     EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
-    EXPECT_EQ(test::errorText([&] { TerrainView(scene, "moon"); }),
+    EXPECT_EQ(errorText([&] { TerrainView(scene, "moon"); }),
               "the scene has no path or camera 'moon'; paths: none; cameras: 'valley'; or 'AZIMUTH "
               "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a "
               "path; or overview, valley, steep, round_flight");
@@ -207,9 +205,7 @@ TEST(TerrainViewsTest, StandsWhereAUserSays) {
     const auto from = [&](const std::string& view, int frame = 0, int frames = 1) {
         return TerrainView(scene, view).camera(frame, frames, 1.5F);
     };
-    const auto refused = [&](const std::string& view) {
-        return test::errorText([&] { from(view); });
-    };
+    const auto refused = [&](const std::string& view) { return errorText([&] { from(view); }); };
     EXPECT_EQ(from("10 70 300 > 160 0 100").position, glm::vec3(10, 70, 300));
     EXPECT_EQ(from("10 70 300 > 160 0 100").target, glm::vec3(160, 0, 100));
     EXPECT_EQ(from("30 60").position,
@@ -225,12 +221,12 @@ TEST(TerrainViewsTest, StandsWhereAUserSays) {
         "view '160 48 160 > 300 64 160': the eye at 160 48 160 lies under the ground; allowed "
         "there: above 48");
     EXPECT_THAT(refused(path + "; 160 47 160 > 300 64 160"),
-                testing::HasSubstr("lies under the ground; allowed there: above 4"));
+                HasSubstr("lies under the ground; allowed there: above 4"));
     EXPECT_EQ(from("-20 10 160 > 300 64 160").position.x, -20.0F);
     EXPECT_THAT(refused("-20 0 160 > 300 64 160"),
-                testing::HasSubstr("the eye at -20 0 160 lies under the ground; allowed there: "
-                                   "above 0"));
-    EXPECT_THAT(refused("30 -60"), testing::HasSubstr("lies under the ground"));
+                HasSubstr("the eye at -20 0 160 lies under the ground; allowed there: "
+                          "above 0"));
+    EXPECT_THAT(refused("30 -60"), HasSubstr("lies under the ground"));
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Maps larger than what may be in memory: resident bytes while a file's map goes into the cache,
 // and while it is flown over.
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -64,8 +63,8 @@ class TerrainMemoryTest : public test::TechniqueTest {
         return run::peakResidentBytes() - before;
     }
 
-    test::TemporaryFolder folder_;
-    std::filesystem::path path_ = folder_.path() / "map.raw";
+    TemporaryFolder folder_;
+    fs::path path_ = folder_.path() / "map.raw";
 };
 
 TEST_F(TerrainMemoryTest, ARealMapIsKeptAndFlownOverInAFractionOfItsSize) {

@@ -1,7 +1,5 @@
 #include "techniques/terrain_tessellation/terrain_metadata.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -121,7 +119,7 @@ TEST(TerrainMetadata, APlaneHasNoErrorAndOneSampleHasATree) {
 
 TEST(TerrainMetadata, RefusesEmptyMapsAndOddBlocks) {
     const auto messageOf = [](const scene::HeightMap& map, const MetadataSettings& settings) {
-        return test::errorText([&] { TerrainMetadata::build(map, settings); });
+        return errorText([&] { TerrainMetadata::build(map, settings); });
     };
     EXPECT_EQ(messageOf({}, {}), "terrain: the height map has no samples; allowed: at least one");
     EXPECT_EQ(messageOf(randomMap(2, 2), {12, 4}),
@@ -131,7 +129,7 @@ TEST(TerrainMetadata, RefusesEmptyMapsAndOddBlocks) {
 }
 
 TEST(TerrainMetadata, ComesBackFromTheCacheUnlessDamaged) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const scene::HeightMap map = randomMap(65, 65);
     const MetadataSettings settings{8, 4};
     const TerrainMetadata built = TerrainMetadata::openOrBuild(folder.path(), map, settings);
@@ -159,7 +157,7 @@ TEST(TerrainMetadata, ComesBackFromTheCacheUnlessDamaged) {
 }
 
 TEST(TerrainMetadata, OfAFileIsThatOfTheSameHeightsInMemory) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const MetadataSettings settings{8, 4};
     scene::HeightMap coarse = randomMap(33, 21);
     const scene::HeightMap inMemory = scene::resampled(coarse, 129, 5.0F, 1);

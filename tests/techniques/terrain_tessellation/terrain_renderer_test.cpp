@@ -268,7 +268,7 @@ TEST_F(TerrainTest, SplittingChangesNoPixel) {
 
 TEST_F(TerrainTest, RefusesAMapThatTheMetadataIsNotOf) {
     makeTerrain(roughMap(257, 1.0F));
-    EXPECT_EQ(test::errorText([&] { DeviceTerrain(roughMap(65, 1.0F), *metadata); }),
+    EXPECT_EQ(errorText([&] { DeviceTerrain(roughMap(65, 1.0F), *metadata); }),
               "height map of 65 × 65 samples with metadata of 257 × 257");
 }
 

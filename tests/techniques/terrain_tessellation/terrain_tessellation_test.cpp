@@ -10,8 +10,6 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-using test::errorText;
-
 /// Waves of several lengths: levels differ.
 scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
     scene::Scene scene;

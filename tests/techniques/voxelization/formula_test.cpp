@@ -1,7 +1,6 @@
 #include "techniques/voxelization/formula.h"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
@@ -16,7 +15,7 @@ namespace {
 constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 
 std::string errorOf(const std::string& formula) {
-    return test::errorText([&] { Formula(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14}); });
+    return errorText([&] { Formula(formula, {"x", "y"}, SourceLocation{"a.yaml", 3, 14}); });
 }
 
 TEST(Formula, SaysWhereAFormulaIsWrong) {

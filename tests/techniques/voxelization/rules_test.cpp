@@ -424,7 +424,7 @@ TEST_F(RulesTest, WideTrianglesAreDecidedAsOnTheCpu) {
 
 TEST_F(RulesTest, RefusesVerticesTooFarFromTheBox) {
     const scene::Mesh mesh = shapes::cube(glm::vec3(0.0F), glm::vec3(3000.0F));
-    EXPECT_EQ(test::errorText([&] {
+    EXPECT_EQ(errorText([&] {
                   voxelize(mesh, settings(32, Rule::Thin), {glm::vec3(0.0F), glm::vec3(1.0F)});
               }),
               "vertex 1 lies 96000 voxels from the grid's corner; the exact rules allow 65536");

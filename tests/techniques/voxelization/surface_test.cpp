@@ -1,5 +1,4 @@
 // Implicit and parametric surfaces against the formulas themselves.
-#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -206,7 +205,7 @@ TEST(FiniteBounds, PassesOverWhatIsNoPoint) {
 
 TEST(ParametricSource, RefusesWhatItCannotDo) {
     const auto errorOf = [](const std::string& yaml, const GridSettings& settings) {
-        return test::errorText([&] {
+        return errorText([&] {
             Params params = surfaceParams(yaml);
             ParametricSource(params, settings, std::nullopt);
         });

@@ -1,5 +1,4 @@
 // Boolean operations and collision on worksheets, against spheres' formulas and bit by bit.
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>

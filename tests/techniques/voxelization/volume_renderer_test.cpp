@@ -1,9 +1,6 @@
 // Proxy planes against a ray march on the CPU through the same grid.
 #include "techniques/voxelization/volume_renderer.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "engine/core/random.h"
@@ -318,12 +315,12 @@ TEST(CameraOfVoxels, IsAsAllTechniquesTakeIt) {
     expectNear(from("0 90"), orbitCamera(kBox, 0, 90, 1.5F).position);
     expectNear(from("door"), scene.cameras[0].position);
     expectNear(from("9 8 7 > 0 3 5"), {9.0F, 8.0F, 7.0F});
-    EXPECT_EQ(test::errorText([&] { from("0 3 5 > 1 3 5"); }),
+    EXPECT_EQ(errorText([&] { from("0 3 5 > 1 3 5"); }),
               "view '0 3 5 > 1 3 5': the eye lies within the grid, from -2 1 3 to 2 5 7; allowed: "
               "one outside of it");
-    EXPECT_THAT(test::errorText([&] { from("window"); }),
-                testing::StartsWith("the scene has no path or camera 'window'; paths: none; "
-                                    "cameras: 'door'"));
+    EXPECT_THAT(errorText([&] { from("window"); }),
+                StartsWith("the scene has no path or camera 'window'; paths: none; "
+                           "cameras: 'door'"));
 }
 
 // As large as it fits, the eye outside of a grid that is longer than it needs; what is flat is seen

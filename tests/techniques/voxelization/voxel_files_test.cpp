@@ -1,8 +1,6 @@
 // Files of voxels, read again by other readers than there are writers of.
 #include "techniques/voxelization/voxel_files.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -19,12 +17,11 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-namespace fs = std::filesystem;
 using Colour = std::array<std::uint8_t, 3>;
 using Place = std::tuple<int, int, int>;
 using Colours = std::map<Place, Colour>;  // of the full voxels
 
-using VoxelFiles = test::FolderTest;
+using VoxelFiles = FolderTest;
 
 Place placeIn(const glm::ivec3& v) {
     return {v.x, v.y, v.z};
@@ -236,7 +233,7 @@ TEST_F(VoxelFiles, VoxJoinsSimilarColours) {
 
 TEST_F(VoxelFiles, OtherFilesAreRefused) {
     const auto refusal = [](const char* path, int resolution) {
-        return test::errorText([&] { requireVoxelFile(path, resolution); });
+        return errorText([&] { requireVoxelFile(path, resolution); });
     };
     EXPECT_EQ(refusal("m.stl", 64), "m.stl: .npy, .vox and .binvox are allowed");
     EXPECT_EQ(refusal("m", 64), "m: .npy, .vox and .binvox are allowed");

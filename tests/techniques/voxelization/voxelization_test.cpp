@@ -9,8 +9,6 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-using test::errorText;
-
 class VoxelizationTest : public VoxelizerTest {
   protected:
     std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene) {
@@ -104,10 +102,10 @@ TEST_F(VoxelizationTest, TheEyeIsOutsideOfTheGrid) {
         });
     };
     const std::string within = "view '0 0 0 > 1 0 0': the eye lies within the grid, from ";
-    EXPECT_THAT(refused("draw: opaque, view: 0 0 0 > 1 0 0"), testing::StartsWith(within + "-1.0"));
+    EXPECT_THAT(refused("draw: opaque, view: 0 0 0 > 1 0 0"), StartsWith(within + "-1.0"));
     // A corner of the padded cube, a voxel beside the sphere's own box.
     EXPECT_THAT(refused("padding: 8, view: -1.5 -1.5 -1.5 > 1 0 0"),
-                testing::HasSubstr("the eye lies within the grid, from -2 -2 -2 to 2 2 2"));
+                HasSubstr("the eye lies within the grid, from -2 -2 -2 to 2 2 2"));
     EXPECT_EQ(refused("padding: 0, view: -1.5 -1.5 -1.5 > 1 0 0"), "no error");
     EXPECT_EQ(refused("box_min: [1, 1, 1], box_max: [2, 2, 2], view: 0 0 0 > 1 0 0"), "no error");
     EXPECT_EQ(
@@ -115,7 +113,7 @@ TEST_F(VoxelizationTest, TheEyeIsOutsideOfTheGrid) {
         "case.yaml:1:53: " + within + "-2.5 -2.5 -2.5 to 2.5 2.5 2.5; allowed: one outside of it");
     EXPECT_THAT(refused("input: implicit, formula: x, box_min: [-1, -1, -1], box_max: [1, 1, 1], "
                         "view: 0 0 0 > 1 0 0"),
-                testing::HasSubstr(within + "-1 -1 -1 to 1 1 1;"));
+                HasSubstr(within + "-1 -1 -1 to 1 1 1;"));
 }
 
 TEST_F(VoxelizationTest, NeedsTrianglesThatReachSomewhere) {

@@ -89,8 +89,7 @@ class HostFormula {
 class ShaderFolder {
   public:
     explicit ShaderFolder(const std::string& text) {
-        std::filesystem::copy(dataFolder("shaders") / "voxelization",
-                              folder_.path() / "voxelization");
+        fs::copy(dataFolder("shaders") / "voxelization", folder_.path() / "voxelization");
         folder_.write("test.comp.glsl", text);
     }
     gl::Pass pass(const gl::Defines& defines,
@@ -99,7 +98,7 @@ class ShaderFolder {
     }
 
   private:
-    test::TemporaryFolder folder_;
+    TemporaryFolder folder_;
 };
 
 /// A device and the shaders.

@@ -115,10 +115,10 @@ TEST(WorksheetTest, RefusesWhatTheDeviceCannotHold) {
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(512, 32), limits));
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 1), limits));
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 8), limits));
-    EXPECT_EQ(test::errorText([&] { checkFitsDevice(WorksheetLayout(1024, 16), limits); }),
+    EXPECT_EQ(errorText([&] { checkFitsDevice(WorksheetLayout(1024, 16), limits); }),
               "1024³ voxels of 16 bits take 2147483648 bytes an axis; allowed: 1073741824");
     limits.maxArrayLayers = 16;
-    EXPECT_EQ(test::errorText([&] { checkFitsDevice(WorksheetLayout(512, 32), limits); }),
+    EXPECT_EQ(errorText([&] { checkFitsDevice(WorksheetLayout(512, 32), limits); }),
               "512³ voxels of 32 bits take 32 worksheets of 2048 × 2048 texels; the device holds "
               "16 of 16384 × 16384");
     EXPECT_THROW(checkFitsDevice(WorksheetLayout(512, 32), limits), UnsupportedError);

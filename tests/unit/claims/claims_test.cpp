@@ -1,8 +1,6 @@
 #include "runner/claims/claims.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +18,6 @@
 
 namespace gfxrepro::claims {
 namespace {
-
-using testing::HasSubstr;
-
-using test::errorText;
 
 const ReportContext kSoftware{"llvmpipe", "software", "quick", "abc", ""};
 const ReportContext kGpu{"GeForce", "gpu", "paper", "abc", ""};
@@ -77,7 +71,7 @@ TEST(Claims, APerfectPictureIsBetterThanAnyOther) {
     const ClaimResult bound = judgePowers("bound: a, at_least: 30", powers(infinite));
     EXPECT_EQ(bound.verdict, Verdict::Holds);
     EXPECT_THAT(bound.measured, HasSubstr("∞"));
-    EXPECT_THAT(bound.reason, testing::Not(HasSubstr("crossing")));
+    EXPECT_THAT(bound.reason, Not(HasSubstr("crossing")));
     EXPECT_EQ(judgePowers("bound: a, at_most: 30", powers(infinite)).verdict, Verdict::Fails);
     EXPECT_EQ(judgePowers("order: a < b", powers(forty, infinite)).verdict, Verdict::Holds);
     EXPECT_EQ(judgePowers("order: a < b", powers(infinite, forty)).verdict, Verdict::Fails);
@@ -685,7 +679,7 @@ TEST(Claims, AmbiguousSaysSo) {
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
     EXPECT_EQ(result.reason,
               "the interval reaches over the bound, so neither verdict is sure" + kByTheClock);
-    EXPECT_THAT(result.measured, testing::MatchesRegex("[0-9.]+ \\[[0-9.]+, [0-9.]+\\]"));
+    EXPECT_THAT(result.measured, MatchesRegex("[0-9.]+ \\[[0-9.]+, [0-9.]+\\]"));
 }
 
 /// Rows n = 1, 2, 4, 8; wall and CPU time in each of `rounds` processes: a function of n and round.
@@ -834,7 +828,7 @@ TEST(Claims, TimesRiseOnTheWhole) {
                             return (n == 8.0 ? 2.5 : n) * drift(round);
                         }));
     EXPECT_EQ(result.verdict, Verdict::Fails);
-    EXPECT_THAT(result.measured, testing::StartsWith("step -37.5 %"));
+    EXPECT_THAT(result.measured, StartsWith("step -37.5 %"));
     // Nothing but noise.
     result = judgeTimed(rising, timedRows(6, [](double n, int round) {
                             return 10.0 + (static_cast<int>(n) * 7 + round * 5) % 3;
@@ -864,8 +858,8 @@ TEST(Claims, StrictlyIsSoOfWhatVaries) {
     };
     EXPECT_EQ(judge(rounded).verdict, Verdict::Ambiguous);
     EXPECT_THAT(judge(rounded).reason,
-                testing::StartsWith("rounded values: with half a step on either side the interval "
-                                    "reaches over the bound"));
+                StartsWith("rounded values: with half a step on either side the interval "
+                           "reaches over the bound"));
     const Timed known = [](double n, int round) { return n < 4.0 ? n * drift(round) : 4.0; };
     EXPECT_EQ(judge(known).verdict, Verdict::Fails) << "the same in all processes";
     const Timed beside = [](double n, int round) {
@@ -897,9 +891,9 @@ TEST(Claims, ADifferenceBelowTheNoiseOfTheTableIsAmbiguous) {
         judgeTimed("bound: ms, at_least: 100.5, at: {n: 2}, kind: algorithmic", records);
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
     EXPECT_THAT(result.measured, HasSubstr("[102, 102.1]"));
-    EXPECT_THAT(result.reason,
-                testing::MatchesRegex(
-                    "nearer to the bound than the noise of these times, [0-9.]+ %" + kByTheClock));
+    EXPECT_THAT(
+        result.reason,
+        MatchesRegex("nearer to the bound than the noise of these times, [0-9.]+ %" + kByTheClock));
     EXPECT_EQ(judgeTimed("bound: ms, at_least: 50, at: {n: 2}, kind: algorithmic", records).verdict,
               Verdict::Holds);
 }
@@ -962,7 +956,7 @@ TEST(Claims, OneOfManyRowsThatFailsByChanceIsAmbiguous) {
 
 /// Where every case failed there is no row, and nobody laid any out.
 TEST(Claims, WhereNothingWasMeasuredTheyAreUnmeasured) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file =
         folder.write("s.yaml",
                      "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: {way: [a, b]}\n"
@@ -1038,12 +1032,10 @@ TEST(Claims, WhatWasJudgedByCpuTimeIsShown) {
         if (labels[1] == "cpu_ms") EXPECT_EQ(table.rows[1].cells[1].measured, "40.0");
         return labels;
     };
-    EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"),
-                testing::ElementsAre("ms", "cpu_ms", "fps"));
+    EXPECT_THAT(columnsOf("trend: ms, over: n, at_most: 2"), ElementsAre("ms", "cpu_ms", "fps"));
     EXPECT_THAT(columnsOf("order: [n=8, n=1], of: fps, kind: algorithmic"),
-                testing::ElementsAre("ms", "fps", "cpu_fps"));
-    EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"),
-                testing::ElementsAre("ms", "fps"));
+                ElementsAre("ms", "fps", "cpu_fps"));
+    EXPECT_THAT(columnsOf("bound: ms, at_most: 9, kind: absolute"), ElementsAre("ms", "fps"));
 }
 
 TEST(Claims, ARoundThatIsNotANumberIsNotPassedOver) {
@@ -1318,9 +1310,8 @@ TEST(Claims, BadOperandsAreErrors) {
               "'time' is no column (columns: a, b, c-c)");
     EXPECT_EQ(error("a +"), "no error") << "refused before, where columns were known";
     EXPECT_THAT(evaluateClaims(experiment, table, kSoftware)[0].reason,
-                testing::StartsWith("'a +' is no expression: "));
-    EXPECT_THAT(whatIsAbsent(experiment.claims[0], table),
-                testing::StartsWith("'a +' is no expression: "));
+                StartsWith("'a +' is no expression: "));
+    EXPECT_THAT(whatIsAbsent(experiment.claims[0], table), StartsWith("'a +' is no expression: "));
     EXPECT_EQ(error("max(a, c-c) * 2"), "no error");
     experiment.claims[0].at = {{"m", {Node::number(1.0)}}};
     EXPECT_EQ(error("a"),
@@ -1470,7 +1461,7 @@ TEST(Claims, WhatNoRowHasByAColumnOfTheFileIsRefused) {
         for (config::Case& one : records.cases) one.axes = one.params;
         for (records::Record& one : records) one.table = "sweep/s";
         for (config::Case& one : records.cases) one.experiment = "sweep/s";
-        const test::TemporaryFolder folder;
+        const TemporaryFolder folder;
         const auto file = folder.write(
             "s.yaml",
             "sweep_of: s\ntitle: t\ntechnique: imported\nsweep: {m: [b, c], n: [1, 2]}\n"
@@ -1501,12 +1492,11 @@ TEST(Claims, WhatIsNoExpressionOrReadsNoColumnIsRefusedBeforeAnythingIsMeasured)
         experiment.claims[0].operands[0] = operand;
         return errorText([&] { requireJudgeable(experiment, table); });
     };
-    EXPECT_THAT(refused("foo(a)"),
-                testing::StartsWith("t.yaml:4:2: claim 'X': 'foo' is no function"));
+    EXPECT_THAT(refused("foo(a)"), StartsWith("t.yaml:4:2: claim 'X': 'foo' is no function"));
     for (const char* operand : {"a +", "(a", "a b"}) {
-        EXPECT_THAT(refused(operand),
-                    testing::StartsWith(
-                        fmt::format("t.yaml:4:2: claim 'X': '{}' is no expression: ", operand)));
+        EXPECT_THAT(
+            refused(operand),
+            StartsWith(fmt::format("t.yaml:4:2: claim 'X': '{}' is no expression: ", operand)));
     }
     EXPECT_THAT(refused("a b"), HasSubstr("\"b\"")) << "by its name, not the parser's";
     EXPECT_EQ(refused("1 + 1"),
@@ -1574,8 +1564,7 @@ TEST(Claims, ANumberThatIsAColumnIsNoNumber) {
     maker.beginCase("s", R"({"size":32})").add("triangles", {2.0});
     const ClaimResult absent = judged("[32, 64]", "4");
     EXPECT_EQ(absent.verdict, Verdict::Unmeasured);
-    EXPECT_THAT(absent.reason,
-                testing::StartsWith("not among what was measured: '4' is no column"));
+    EXPECT_THAT(absent.reason, StartsWith("not among what was measured: '4' is no column"));
 }
 
 TEST(Claims, AClaimOnPartOfItsRowsSaysSoAndDoesNotCountAsAHold) {

@@ -1,7 +1,6 @@
 // Whether intervals of times hold the truth as often as they say, by the program's own rules: times
 // that scatter by 10 % between processes and by 5 % within, both log-normal.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

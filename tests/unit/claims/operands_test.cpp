@@ -1,14 +1,10 @@
 #include "runner/claims/kinds/operands.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "engine/core/text.h"
+#include "tests/support/support.h"
 
 namespace gfxrepro::claims {
 namespace {
-
-using testing::ElementsAre;
 
 const std::vector<std::string> kLabels{"a", "a_0.5", "a / b", "8 bits", "8"};
 

@@ -1,5 +1,4 @@
 // Claims that noisy pictures have the expectation of their truth.
-#include <gtest/gtest.h>
 
 #include "runner/claims/claims.h"
 #include "tests/support/support.h"
@@ -53,8 +52,7 @@ TEST(SameMean, SharesItsFalseAlarmsAmongTheRows) {
 
 std::string checkError(const std::string& body) {
     const config::Experiment experiment = tables::experimentFrom(body);
-    return test::errorText(
-        [&] { requireProvenance(experiment, tables::buildTable(experiment, {})); });
+    return errorText([&] { requireProvenance(experiment, tables::buildTable(experiment, {})); });
 }
 
 TEST(SameMean, IsAskedOfItsMetricAlone) {

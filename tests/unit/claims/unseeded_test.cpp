@@ -1,8 +1,6 @@
 // Verdicts on what a program or an import says of itself, where its numbers differ when they are
 // taken again, or its sweep has the seeds.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
@@ -102,7 +100,7 @@ TEST(Unseeded, WhatDiffersIsOfWhatWasMeasuredWhateverIsShown) {
                                                  columns, claim)),
                     maker.records());
                 EXPECT_EQ(result.verdict, Verdict::Ambiguous) << columns << claim;
-                EXPECT_THAT(result.reason, testing::HasSubstr(kOneBesideMany)) << columns << claim;
+                EXPECT_THAT(result.reason, HasSubstr(kOneBesideMany)) << columns << claim;
             }
         }
     }
@@ -133,10 +131,10 @@ TEST(Unseeded, OneProcessOfSeveralThatWereAskedForDecidesNothing) {
         for (const char* metric : {"value", "rmse"}) {
             const ClaimResult result = judge(Of::Program, metric, 6, claim);
             EXPECT_EQ(result.verdict, Verdict::Ambiguous) << claim;
-            EXPECT_THAT(result.reason,
-                        testing::HasSubstr(
-                            "one process of a program without a seed; `measure: {processes: 2}` "
-                            "tells whether another comes to the same, `processes: 1` says so"))
+            EXPECT_THAT(
+                result.reason,
+                HasSubstr("one process of a program without a seed; `measure: {processes: 2}` "
+                          "tells whether another comes to the same, `processes: 1` says so"))
                 << claim;
             EXPECT_EQ(judge(Of::Program, metric, 1, claim).verdict, Verdict::Holds) << claim;
             EXPECT_EQ(judge(Of::Import, metric, 6, claim).verdict, Verdict::Ambiguous) << claim;
@@ -246,7 +244,7 @@ TEST(Unseeded, NumbersThatDifferByTheirRoundingAreEqual) {
                                             tables::kNeedsSix)
                               : std::string(claim[0] == 'b' ? "worst at n 1" : ""))
                     << claim;
-                EXPECT_THAT(result.measured, testing::Not(testing::HasSubstr("…"))) << claim;
+                EXPECT_THAT(result.measured, Not(HasSubstr("…"))) << claim;
             }
         }
     }
@@ -424,11 +422,11 @@ TEST(Unseeded, WhatIsTakenTogetherOfCasesMeasuredOnceDecidesNothing) {
               std::string("exact: e, equals: 0.425, at: {m: b}")}) {
             const ClaimResult once = judgeTogether(of, "run", 1, claim);
             EXPECT_EQ(once.verdict, Verdict::Ambiguous) << claim;
-            EXPECT_THAT(once.reason,
-                        testing::HasSubstr(
-                            "takes values of 'run' together that were measured once each, and may "
-                            "repeat one case: an axis of rows tells them apart; what repeats a "
-                            "case is its processes (of an import the column 'process', or 'seed')"))
+            EXPECT_THAT(
+                once.reason,
+                HasSubstr("takes values of 'run' together that were measured once each, and may "
+                          "repeat one case: an axis of rows tells them apart; what repeats a "
+                          "case is its processes (of an import the column 'process', or 'seed')"))
                 << claim;
         }
         EXPECT_EQ(judgeTogether(of, "run", 2, order).verdict, Verdict::Holds) << "known by now";
@@ -460,7 +458,7 @@ TEST(Unseeded, AMetricWithoutSeedsBesideOneWithSomeIsTakenTogetherLikewise) {
                      "claims: {C: {says: so, order: [b, c], of: once}}\n"),
         maker.records());
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
-    EXPECT_THAT(result.reason, testing::HasSubstr("takes values of 'trial' together"));
+    EXPECT_THAT(result.reason, HasSubstr("takes values of 'trial' together"));
 }
 
 /// Frames that a file tells apart may be repetitions, too; those of our own are a path.
@@ -736,7 +734,7 @@ TEST(Unseeded, SweptSeedsMayBeOthersForEach) {
         const ClaimResult result = judgeSeedsOf("e", 6, first, 1);
         EXPECT_EQ(result.verdict, Verdict::Holds) << first << result.reason;
     }
-    EXPECT_THAT(judgeSeedsOf("e", 8, 3, 1).reason, testing::HasSubstr("a range of 5 processes"))
+    EXPECT_THAT(judgeSeedsOf("e", 8, 3, 1).reason, HasSubstr("a range of 5 processes"))
         << "five seeds in common";
 }
 

@@ -1,8 +1,6 @@
 // Predictions by the same case, the same parameters, the median; and files.
 #include "runner/cluster/predictions.h"
 
-#include <gtest/gtest.h>
-
 #include "engine/core/files.h"
 #include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
@@ -92,7 +90,7 @@ TEST(Predictions, SurviveAFile) {
 
 TEST(Predictions, RefuseWhatIsNeitherRunNorFile) {
     const TemporaryFolder folder;
-    const auto text = [&](const std::filesystem::path& path) {
+    const auto text = [&](const fs::path& path) {
         return errorText([&] { Predictor::from({path}); }, folder.path());
     };
     EXPECT_EQ(text(folder.path()), "DIR: is not a run directory (it has no plan.json)");

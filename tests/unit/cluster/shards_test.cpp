@@ -1,7 +1,6 @@
 // Cuts: complete, disjoint, repeatable, balanced, and never through a table of times.
 #include "runner/cluster/shards.h"
 
-#include <gmock/gmock.h>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +20,6 @@ namespace {
 
 using config::Case;
 using Lane = config::Measure::Lane;
-using ::testing::ElementsAre;
 
 std::vector<Case> qualityCases(int count) {
     std::vector<Case> cases;
@@ -185,7 +183,6 @@ TEST(Plans, EveryModelOfACaseIsInItsId) {
 }
 
 using cluster::mergeRuns;
-using ::testing::IsEmpty;
 
 /// Four quality cases q/1, then two timing cases t/1.
 run::Plan makePlan() {
@@ -256,12 +253,12 @@ TEST(Merge, RefusesMoreThanIsReadOfARun) {
     for (cluster::ShardRun& shard : shards) shard.path = folder.path() / shard.path;
     const auto merged = [&](const std::string& file, std::uintmax_t bytes) {
         for (const cluster::ShardRun& shard : shards) {
-            std::filesystem::create_directories((shard.path / file).parent_path());
+            fs::create_directories((shard.path / file).parent_path());
             std::ofstream{shard.path / file};
-            std::filesystem::resize_file(shard.path / file, bytes);  // of holes
+            fs::resize_file(shard.path / file, bytes);  // of holes
         }
         const std::string problem = errorText([&] { mergeRuns(plan, shards, "merge"); });
-        for (const cluster::ShardRun& shard : shards) std::filesystem::remove(shard.path / file);
+        for (const cluster::ShardRun& shard : shards) fs::remove(shard.path / file);
         return problem;
     };
     const auto refused = [](const std::string& file, std::uintmax_t bytes, std::uintmax_t most) {
@@ -345,7 +342,7 @@ TEST(Merge, TheWholePlanIsOfTheDevicesThatMeasured) {
     const auto file = folder.path() / cluster::kSubmittedPlan;
     whole.writeFile(file);
     cluster::ShardRun shard{folder.path() / "shards/2", {}};
-    std::filesystem::create_directories(shard.path);
+    fs::create_directories(shard.path);
     shard.run.plan =
         cluster::shardPlan(whole, {2, 2, sha256OfFile(file)}, std::vector<int>{0, 0, 1, 1, 0, 0});
     run::rebind(shard.run.plan, "gpu");
@@ -401,7 +398,7 @@ run::RunDirectory directoryWith(const TemporaryFolder& folder, const cluster::Sh
     return directory;
 }
 
-using ForeignTimes = test::FolderTest;
+using ForeignTimes = FolderTest;
 
 TEST_F(ForeignTimes, UnfinishedTablesAreMeasuredAgain) {
     const run::Plan plan = makePlan();

@@ -1,8 +1,6 @@
 // Small configs in a temporary folder, and the errors that they give.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <string>
 
 #include "runner/config/experiment.h"
@@ -22,7 +20,7 @@ class ExperimentTest : public testing::Test {
         return loadExperiment(folder.write("zju/a.yaml", text), options, folder.path());
     }
     std::string loadError(const std::string& text, const ExperimentOptions& options = {}) const {
-        return test::errorText([&] { load(text, options); }, folder.path());
+        return errorText([&] { load(text, options); }, folder.path());
     }
     /// Of a small file that is right but for `more`.
     std::string errorWith(const std::string& more) const {
@@ -36,7 +34,7 @@ class ExperimentTest : public testing::Test {
             claim);
     }
 
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
 };
 
 }  // namespace gfxrepro::config

@@ -1,8 +1,6 @@
 #include "runner/config/experiment.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
@@ -12,9 +10,6 @@
 
 namespace gfxrepro::config {
 namespace {
-
-using test::errorText;
-using testing::ElementsAre;
 
 constexpr const char* kVoxelization = R"(table: zju2005/2.1
 title: Voxelization time by model at 256³
@@ -372,13 +367,13 @@ TEST_F(ExperimentTest, FilesThatExtendTheNextOneTwiceAreNotReadForAnHour) {
     }
     folder.write("e20.yaml", "params: {a: 1}\n");
     EXPECT_EQ(errorWith("extends: e12.yaml"), "no error");
-    EXPECT_THAT(errorWith("extends: e0.yaml"),
-                testing::HasSubstr(
-                    "extends: more than 1000 files, those that are extended twice counted twice"));
+    EXPECT_THAT(
+        errorWith("extends: e0.yaml"),
+        HasSubstr("extends: more than 1000 files, those that are extended twice counted twice"));
 }
 
 TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {
-    EXPECT_EQ(test::errorText([] { parseOverride("a="); }),
+    EXPECT_EQ(errorText([] { parseOverride("a="); }),
               "'a=' on the command line has no value; null removes the key");
     ExperimentOptions options;
     options.sweeps = {parseOverride("a=null")};
@@ -496,7 +491,7 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
     ExperimentOptions options;
     options.sets = {parseOverride("scene=m.obj")};
-    const std::string here = (std::filesystem::current_path() / "m.obj").string();
+    const std::string here = (fs::current_path() / "m.obj").string();
     EXPECT_EQ(load("table: p/1\ntitle: t\ntechnique: x\n", options).scene.text(), here);
     options.sets.clear();
     options.sweeps = {parseOverride("scene=m.obj,models/duck")};

@@ -1,16 +1,9 @@
 #include "runner/config/external_program.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::config {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
-using testing::ElementsAre;
 
 ExternalProgram programOf(const std::string& yaml) {
     return readProgram(parseYaml(yaml, "c.yaml"));
@@ -206,7 +199,7 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
         "that ends in _per_second, by which claims know that it varies");
     for (const char* unit : {"fps", "Hz", "1/ms", "ray/second", "seconds", "milliseconds"}) {
         EXPECT_THAT(errorOf(std::string("command: t\nmetrics: {speed: ") + unit + "}"),
-                    testing::HasSubstr(std::string("'speed' has the unit '") + unit + "'; "));
+                    HasSubstr(std::string("'speed' has the unit '") + unit + "'; "));
     }
     EXPECT_EQ(errorOf("command: t\nmetrics: {a: {doc: x}}"),
               "c.yaml:2:11: program: metric 'a' needs 'unit'; \"1\" for none");
@@ -264,7 +257,7 @@ TEST(ExternalProgram, ATruthMayBeOfSeveralSeeds) {
 TEST(ExternalProgram, ItsKeyIsOfItsFiles) {
     const TemporaryFolder folder;
     const auto script = folder.write("run.sh", "#!/bin/sh\n");
-    std::filesystem::permissions(script, std::filesystem::perms::owner_all);
+    fs::permissions(script, fs::perms::owner_all);
     folder.write("scene.txt", "one");
     folder.write("more.txt", "two");
     folder.write("truth.png", "three");

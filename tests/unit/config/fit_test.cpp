@@ -1,14 +1,10 @@
 #include "runner/config/printed_section.h"
 
-#include <gmock/gmock.h>
-
 #include "engine/core/files.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
 namespace {
-
-using testing::StartsWith;
 
 class FitTest : public ExperimentTest {
   protected:

@@ -1,13 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "runner/config/experiment.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
 namespace {
-
-using testing::ElementsAre;
 
 class PlotTest : public ExperimentTest {
   protected:

@@ -1,5 +1,4 @@
 // The schema as JSON, judged by a validator that is not ours; and the readers beside it.
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <set>
@@ -16,8 +15,6 @@
 
 namespace gfxrepro::config {
 namespace {
-
-namespace fs = std::filesystem;
 
 const fs::path kConfigs = GFXREPRO_CONFIGS;
 
@@ -136,10 +133,10 @@ TEST(Documents, NameEveryShippedExperimentOnce) {
 }
 
 TEST(Documents, SayWhereTheyAreWrong) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto errorOf = [&](const char* text) {
         const fs::path file = folder.write("documents.yaml", text);
-        return test::errorText([&] { (void)readDocuments(file); }).substr(file.string().size());
+        return errorText([&] { (void)readDocuments(file); }).substr(file.string().size());
     };
     EXPECT_TRUE(readDocuments(folder.path() / "none.yaml").empty());
     EXPECT_EQ(errorOf("a: {chapters: []}"), ":1:4: a needs 'title'");
@@ -305,7 +302,7 @@ TEST_F(ExperimentTest, ReaderAndSchemaTakeTheSameNumbers) {
             if (isScene) {
                 text = "scene: m/x\ndoc: d\nsources: [" + text + "]\n";
                 folder.write("scenes/m/x.yaml", text);
-                error = test::errorText([&] {
+                error = errorText([&] {
                     const scene::Catalog catalog(folder.path() / "scenes", folder.path(),
                                                  std::span(&terrain, 1));
                 });
@@ -535,7 +532,7 @@ TEST(Schema, DescribesEveryKeyInWordsAndInMarkdown) {
 }
 
 TEST(Schema, UnknownKindIsAUsageError) {
-    EXPECT_EQ(test::errorText([] { (void)jsonSchema("table", {}); }),
+    EXPECT_EQ(errorText([] { (void)jsonSchema("table", {}); }),
               "schema 'table'; allowed: experiment, preset, scene, documents");
 }
 

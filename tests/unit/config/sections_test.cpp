@@ -1,16 +1,10 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "runner/config/experiment.h"
 #include "tests/unit/config/experiment_fixture.h"
 
 namespace gfxrepro::config {
 namespace {
-
-using testing::ElementsAre;
-using testing::EndsWith;
-using testing::HasSubstr;
 
 TEST_F(ExperimentTest, BadSections) {
     EXPECT_EQ(errorWith("titl: u"),
@@ -144,9 +138,8 @@ TEST_F(ExperimentTest, CellFormats) {
     // The words in brackets are those of fmt 9, or of 10.
     const std::string ofNumbers =
         head + "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} ";
-    EXPECT_THAT(formatError("{mean:.2d}"),
-                testing::AnyOf(ofNumbers + "(invalid type specifier)",
-                               ofNumbers + "(invalid format specifier)"));
+    EXPECT_THAT(formatError("{mean:.2d}"), AnyOf(ofNumbers + "(invalid type specifier)",
+                                                 ofNumbers + "(invalid format specifier)"));
     EXPECT_EQ(formatError("{mean:999999999f}"),
               head +
                   "format is \"{mean:999999999f}\"; allowed: number formats such as {mean:.2f} "
@@ -649,7 +642,7 @@ TEST_F(ExperimentTest, KeysOfASectionSayWhereTheyBelong) {
 TEST_F(ExperimentTest, RatiosOfValuesOfAnAxis) {
     EXPECT_EQ(claimError("{says: s, ratio: scene=s / scene=t, at_least: 1}\n"), "no error");
     EXPECT_THAT(claimError("{says: s, ratio: scene=s / scene=u, at_least: 1}\n"),
-                testing::HasSubstr("'u' is no column; did you mean 's'? (columns: s, t)"));
+                HasSubstr("'u' is no column; did you mean 's'? (columns: s, t)"));
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <set>
 
@@ -10,9 +8,6 @@
 
 namespace gfxrepro::config {
 namespace {
-
-using test::errorText;
-using testing::ElementsAre;
 
 /// Each point as "a=1 b=x".
 std::vector<std::string> expand(std::string_view text) {

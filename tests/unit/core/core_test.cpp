@@ -1,5 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <pwd.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -49,7 +47,7 @@ TEST(Text, NumbersAreDecimalOnly) {
 }
 
 TEST(Text, SplitsTrimsAndJoins) {
-    EXPECT_THAT(split("a,,b", ','), testing::ElementsAre("a", "", "b"));
+    EXPECT_THAT(split("a,,b", ','), ElementsAre("a", "", "b"));
     EXPECT_EQ(trimmed(" \t a b\n"), "a b");
     EXPECT_EQ(trimmed("  "), "");
     const std::vector<std::string> items = {"a", "b"};
@@ -58,7 +56,7 @@ TEST(Text, SplitsTrimsAndJoins) {
     EXPECT_EQ(joined(gaps), ", a, , ");
 }
 
-using Files = test::FolderTest;
+using Files = FolderTest;
 
 TEST_F(Files, CachesLieInTheHomeOfTheUserWithoutHOME) {
     const auto inEnvironment = [](const char* cache, const char* home) {
@@ -74,16 +72,16 @@ TEST_F(Files, CachesLieInTheHomeOfTheUserWithoutHOME) {
     EXPECT_EQ(inEnvironment("/c", "/h"), "/c/gfxrepro");
     EXPECT_EQ(inEnvironment(nullptr, "/h"), "/h/.cache/gfxrepro");
     const passwd* user = ::getpwuid(::getuid());
-    EXPECT_EQ(inEnvironment(nullptr, nullptr),
-              (user ? std::string(user->pw_dir) : std::filesystem::current_path().string()) +
-                  "/.cache/gfxrepro");
+    EXPECT_EQ(
+        inEnvironment(nullptr, nullptr),
+        (user ? std::string(user->pw_dir) : fs::current_path().string()) + "/.cache/gfxrepro");
     inEnvironment(cache.empty() ? nullptr : cache.c_str(), home.empty() ? nullptr : home.c_str());
 }
 
 TEST(Hash, MatchesFips180) {
     EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     EXPECT_EQ(sha256OfFile(folder.write("abc", "abc")), sha256("abc"));
     EXPECT_THROW(sha256OfFile("/dev/zero"), Error);  // which has no end
     EXPECT_THROW(sha256OfFile(folder.path() / "absent"), Error);
@@ -124,19 +122,19 @@ TEST(Random, UniformIsInItsRange) {
 
 TEST_F(Files, NothingButAFileIsReplaced) {
     const auto kept = folder.write("kept", "mine");
-    std::filesystem::create_symlink(kept, folder.path() / "link");
-    std::filesystem::create_symlink("/nonexistent", folder.path() / "nowhere");
+    fs::create_symlink(kept, folder.path() / "link");
+    fs::create_symlink("/nonexistent", folder.path() / "nowhere");
     ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
     for (const char* name : {"link", "nowhere", "pipe"}) {
         EXPECT_EQ(
-            test::errorText([&] { writeFileAtomic(folder.path() / name, "x"); }, folder.path()),
+            errorText([&] { writeFileAtomic(folder.path() / name, "x"); }, folder.path()),
             std::string("cannot write DIR/") + name + ": a link, a pipe or a device, not a file");
     }
-    EXPECT_EQ(test::errorText([] { writeFileAtomic("/dev/null", "x"); }),
+    EXPECT_EQ(errorText([] { writeFileAtomic("/dev/null", "x"); }),
               "cannot write /dev/null: a link, a pipe or a device, not a file");
-    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
     EXPECT_EQ(readFile(kept), "mine");
-    EXPECT_TRUE(std::filesystem::is_symlink(folder.path() / "link"));
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
 }
 
 TEST_F(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
@@ -144,14 +142,12 @@ TEST_F(Files, AtomicWriteReplacesWholeAndLeavesNothingBehind) {
     writeFileAtomic(path, "one");
     writeFileAtomic(path, "two");
     EXPECT_EQ(readFile(path), "two");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path.parent_path()), {}), 1);
+    EXPECT_EQ(std::distance(fs::directory_iterator(path.parent_path()), {}), 1);
 }
 
 TEST_F(Files, WhatIsWrittenInPiecesIsThereAsAWhole) {
     const auto path = folder.write("file.txt", "old");
-    const auto count = [&] {
-        return std::distance(std::filesystem::directory_iterator(folder.path()), {});
-    };
+    const auto count = [&] { return std::distance(fs::directory_iterator(folder.path()), {}); };
     {
         AtomicFile file(path);
         file.write("never there");
@@ -180,13 +176,13 @@ TEST_F(Files, ACopyLeavesOutWhatIsBeingWrittenAlone) {
         EXPECT_EQ(readFile(to / name), "x");
     }
     for (const char* name : {"a.exr.tmp4711", "b.csv.tmp"}) {
-        EXPECT_FALSE(std::filesystem::exists(to / name)) << name;
+        EXPECT_FALSE(fs::exists(to / name)) << name;
     }
     const auto large = folder.write("large", "head");
-    std::filesystem::resize_file(large, std::uintmax_t{1} << 35);  // nearly all of it a hole
-    EXPECT_EQ(test::errorText([&] { copyTree(large, to / "large"); }, folder.path()),
+    fs::resize_file(large, std::uintmax_t{1} << 35);  // nearly all of it a hole
+    EXPECT_EQ(errorText([&] { copyTree(large, to / "large"); }, folder.path()),
               "cannot copy DIR/large: 34359738368 bytes; more than 16 GiB are not copied");
-    EXPECT_FALSE(std::filesystem::exists(to / "large"));
+    EXPECT_FALSE(fs::exists(to / "large"));
 }
 
 TEST_F(Files, AFolderThatAKilledProcessLeftUnfinishedGoesWithTheNextOne) {
@@ -197,25 +193,23 @@ TEST_F(Files, AFolderThatAKilledProcessLeftUnfinishedGoesWithTheNextOne) {
     folder.write(left + "/out/part", "");
     const std::string others[] = {"out.tmp" + std::to_string(::getppid()), "out.tmpx", "a" + left};
     for (const std::string& other : others) folder.write(other + "/part", "");
-    writeFolder(folder.path() / "out",
-                [](const std::filesystem::path& part) { makeFolder(part / "in"); });
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out/in"));
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / left));
-    for (const std::string& other : others)
-        EXPECT_TRUE(std::filesystem::exists(folder.path() / other)) << other;
+    writeFolder(folder.path() / "out", [](const fs::path& part) { makeFolder(part / "in"); });
+    EXPECT_TRUE(fs::exists(folder.path() / "out/in"));
+    EXPECT_FALSE(fs::exists(folder.path() / left));
+    for (const std::string& other : others) EXPECT_TRUE(fs::exists(folder.path() / other)) << other;
 }
 
 TEST_F(Files, MissingFilesAndFoldersAreNamed) {
-    EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "none"); }, folder.path()),
+    EXPECT_EQ(errorText([&] { readFile(folder.path() / "none"); }, folder.path()),
               "cannot read DIR/none: No such file or directory");
-    EXPECT_EQ(test::errorText([&] { readFile(folder.path()); }, folder.path()),
+    EXPECT_EQ(errorText([&] { readFile(folder.path()); }, folder.path()),
               "cannot read DIR: Is a directory");
     ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
-    EXPECT_EQ(test::errorText([&] { readFile(folder.path() / "pipe"); }, folder.path()),
+    EXPECT_EQ(errorText([&] { readFile(folder.path() / "pipe"); }, folder.path()),
               "cannot read DIR/pipe: a pipe or a device, not a file");
     const auto large = folder.write("large", "head");
-    std::filesystem::resize_file(large, (std::uintmax_t{1} << 30) + 1);  // nearly all of it a hole
-    EXPECT_EQ(test::errorText([&] { readFile(large); }, folder.path()),
+    fs::resize_file(large, (std::uintmax_t{1} << 30) + 1);  // nearly all of it a hole
+    EXPECT_EQ(errorText([&] { readFile(large); }, folder.path()),
               "cannot read DIR/large: 1073741825 bytes; at most 1 GiB are read at once");
     EXPECT_TRUE(readFile(folder.write("empty", "")).empty());
 }

@@ -1,16 +1,12 @@
 // Documents of another shape, by their exact words.
 #include "engine/core/json_shape.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "tests/support/support.h"
 
 namespace gfxrepro::config {
 namespace {
-
-using test::errorText;
 
 const SourceLocation kFile{"a.json", 0, 0};
 

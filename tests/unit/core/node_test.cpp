@@ -1,8 +1,5 @@
 #include "engine/core/node.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <limits>
 
 #include <nlohmann/json.hpp>
@@ -11,10 +8,6 @@
 
 namespace gfxrepro::config {
 namespace {
-
-using testing::HasSubstr;
-
-using test::errorText;
 
 std::string parseError(std::string_view text) {
     return errorText([&] { parseYaml(text, "a.yaml"); });
@@ -119,9 +112,8 @@ TEST(Node, ParseErrorsSayWhere) {
               "a.yaml:3:3: indented like none of the lines that it could belong to");
     EXPECT_EQ(parse("a: b\r").find("a")->text(), "b");
     // From yaml-cpp 0.8 on with its name.
-    EXPECT_THAT(parseError("a: *b"),
-                testing::AnyOf("a.yaml:1:4: the referenced anchor is not defined",
-                               "a.yaml:1:4: the referenced anchor is not defined: b"));
+    EXPECT_THAT(parseError("a: *b"), AnyOf("a.yaml:1:4: the referenced anchor is not defined",
+                                           "a.yaml:1:4: the referenced anchor is not defined: b"));
     EXPECT_EQ(parseError("a: &b [*b]"), "a.yaml:1:8: an alias inside of its own anchor");
     EXPECT_EQ(parseError("a:\n\tb: 1\n"), "a.yaml:2:1: a tab in the indentation; use spaces");
     EXPECT_EQ(parseError("a: x\ny\x04: 1"), "a.yaml:2:2: control character 4 in the text");

@@ -1,8 +1,5 @@
 #include "engine/core/params.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <array>
 
 #include <nlohmann/json.hpp>
@@ -11,8 +8,6 @@
 
 namespace gfxrepro::config {
 namespace {
-
-using test::errorText;
 
 enum class Voxel { Bit, Byte };
 constexpr Choice<Voxel> kVoxels[] = {{Voxel::Bit, "bit", "one bit"}, {Voxel::Byte, "byte"}};
@@ -31,7 +26,7 @@ TEST(Params, ValuesAndDefaults) {
     EXPECT_FALSE(params.getBool("lit", true, {"lit"}));
     EXPECT_EQ(params.getText("name", "x", {"name"}), "12");
     EXPECT_THAT(params.getVector("up", std::array{0.0, 0.0, 1.0}, {"up"}),
-                testing::ElementsAre(0.0, 1.5, 0.0));
+                ElementsAre(0.0, 1.5, 0.0));
     EXPECT_EQ(params.getOptionalVector("eye", 3, {"eye"}), std::nullopt);
     EXPECT_EQ(params.getOptionalVector("target", 3, {"target"}), std::nullopt);
     EXPECT_EQ(params.getEnum("voxel", Voxel::Byte, kVoxels, {"voxel"}), Voxel::Bit);

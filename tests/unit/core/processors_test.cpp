@@ -1,6 +1,5 @@
 #include "engine/core/processors.h"
 
-#include <gtest/gtest.h>
 #include <sched.h>
 
 #include <algorithm>

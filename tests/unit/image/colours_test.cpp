@@ -1,5 +1,4 @@
 // What files say of their colours and of how they are held, and what of it is said to be left out.
-#include <gtest/gtest.h>
 
 #include <stb/stb_image_write.h>
 #include <tiffio.h>
@@ -22,7 +21,6 @@
 namespace gfxrepro::image {
 namespace {
 
-using test::TemporaryFolder;
 using Lines = std::vector<std::string>;
 
 std::string bigWord(std::uint32_t value) {

@@ -1,5 +1,4 @@
 // What an EXR file says of its pixels: where they lie, and what they mean.
-#include <gtest/gtest.h>
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
@@ -23,14 +22,10 @@
 namespace gfxrepro::image {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
-
 class ExrMeaning : public testing::Test {
   protected:
     /// Pixels of the columns and rows of `data`: red is their column, green their row.
-    std::filesystem::path write(const char* name, const Rectangle& data,
-                                const Rectangle& display) const {
+    fs::path write(const char* name, const Rectangle& data, const Rectangle& display) const {
         ImageF colour(data.width, data.height, 3);
         for (int y = 0; y < data.height; ++y) {
             for (int x = 0; x < data.width; ++x) {
@@ -54,8 +49,8 @@ class ExrMeaning : public testing::Test {
     }
 
     /// 4 × 4 like pixels of these channels, under a header of the library's.
-    std::filesystem::path writeEven(const char* name, Imf::Header header,
-                                    std::vector<std::pair<const char*, float>> channels) const {
+    fs::path writeEven(const char* name, Imf::Header header,
+                       std::vector<std::pair<const char*, float>> channels) const {
         Imf::FrameBuffer buffer;
         std::vector<std::vector<float>> planes;
         for (const auto& [channel, value] : channels) {
@@ -69,7 +64,7 @@ class ExrMeaning : public testing::Test {
         return path(name);
     }
 
-    std::filesystem::path path(const char* name) const { return folder_.path() / name; }
+    fs::path path(const char* name) const { return folder_.path() / name; }
     std::string errorOf(const char* name) const {
         return errorText([&] { readPicture(path(name)); }, folder_.path());
     }
@@ -282,7 +277,7 @@ TEST_F(ExrMeaning, PixelsThatAreNotFiniteAreCounted) {
     EXPECT_EQ(shown.at(2, 0, 0), 255);
     std::string pfm = "PF\n3 1\n-1\n";
     pfm.append(reinterpret_cast<const char*>(light.values().data()), light.values().size_bytes());
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
     EXPECT_EQ(readPicture(folder.write("a.pfm", pfm)).notes, note);
 }
 

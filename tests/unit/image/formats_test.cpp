@@ -1,6 +1,5 @@
 // Pictures of programs in other formats than EXR and PNG.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <stb/stb_image_write.h>
 #include <tiffio.h>
@@ -23,9 +22,6 @@
 
 namespace gfxrepro::image {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 class Formats : public testing::Test {
   protected:

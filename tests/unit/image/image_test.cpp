@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <bit>
@@ -21,9 +20,6 @@
 
 namespace gfxrepro::image {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 template <class T>
 Image<T> noise(int width, int height, int channels) {
@@ -67,7 +63,7 @@ TEST(ToSrgb8, RoundsEachFloatAsTheCurveDoes) {
     }
 }
 
-using Png = test::FolderTest;
+using Png = FolderTest;
 
 TEST_F(Png, KeepsEightBitsOfEveryChannelCount) {
     for (int channels = 1; channels <= 4; ++channels) {
@@ -134,7 +130,7 @@ TEST_F(Png, RefusesHeadersThatDeclareTooMuch) {
 TEST_F(Png, EvenPicturesThatARunWritesAreRead) {
     const auto path = folder.path() / "black.png";
     writePng(path, Image8(8192, 8192, 1));  // 256 MiB as RGBA
-    const std::uintmax_t bytes = std::filesystem::file_size(path);
+    const std::uintmax_t bytes = fs::file_size(path);
     EXPECT_LT(bytes, (std::uintmax_t{256} << 20) / 500);
     EXPECT_EQ(readPng8(path).width(), 8192);
     // A texture of somebody's may be no such file, and a picture no larger than 16,384².
@@ -188,7 +184,7 @@ ExrImage exrNoise() {
     return exr;
 }
 
-using Exr = test::FolderTest;
+using Exr = FolderTest;
 
 TEST_F(Exr, KeepsTheBitsOfFloatsAndTheAttributes) {
     const ExrImage written = exrNoise();

@@ -1,7 +1,5 @@
 #include "engine/image/resample.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include <limits>
@@ -12,8 +10,6 @@
 
 namespace gfxrepro::image {
 namespace {
-
-using test::errorText;
 
 /// Each pixel holds 10·y + x.
 ImageF numbered(int width, int height) {

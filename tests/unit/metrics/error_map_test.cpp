@@ -1,7 +1,5 @@
 #include "engine/metrics/error_map.h"
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <limits>
 
@@ -12,7 +10,6 @@ namespace {
 
 using image::Image8;
 using image::ImageF;
-using test::errorText;
 
 std::array<int, 3> pixel(const Image8& picture, int x) {
     return {picture.at(x, 0, 0), picture.at(x, 0, 1), picture.at(x, 0, 2)};

@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
@@ -19,7 +18,6 @@ namespace gfxrepro::metrics {
 namespace {
 
 using image::ImageF;
-using test::errorText;
 
 // The method once more, from the paper: double precision, two-dimensional filters, nothing shared
 // with the code under test.

@@ -1,7 +1,5 @@
 #include "engine/metrics/image_error.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 
@@ -12,7 +10,6 @@ namespace gfxrepro::metrics {
 namespace {
 
 using image::ImageF;
-using test::errorText;
 
 ImageF noise(int width, int height, int channels, std::uint64_t seed) {
     Random random(seed);

@@ -1,9 +1,6 @@
 // How often pictures of one expectation are said to differ, and a bias is found: by simulation.
 #include "engine/metrics/mean_test.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -17,7 +14,6 @@ namespace gfxrepro::metrics {
 namespace {
 
 using image::ImageF;
-using testing::ElementsAre;
 
 constexpr int kWidthPx = 32, kHeightPx = 24;
 constexpr std::size_t kSeeds = 6;

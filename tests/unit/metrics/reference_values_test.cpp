@@ -8,8 +8,6 @@
 // use_sample_covariance=False, data_range=1) of the luminance 0.2126 R + 0.7152 G + 0.0722 B in
 // double precision, peak_signal_noise_ratio(…, data_range=1), mean_squared_error().
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
 
 #include "engine/core/files.h"
@@ -67,8 +65,8 @@ TEST(ReferenceValues, HdrFlip) {
 /// Values up to 976 against their blurred and their shifted selves, and one that is mostly
 /// blue: exr/ of the assets, from OpenEXR's collection of images.
 TEST(ReferenceValues, HdrFlipOfRealImages) {
-    const std::filesystem::path folder = assetsFolder() / "exr";
-    if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no images in " << folder;
+    const fs::path folder = assetsFolder() / "exr";
+    if (!fs::exists(folder)) GTEST_SKIP() << "no images in " << folder;
     struct Expected {
         const char* file;
         double start, stop;

@@ -1,8 +1,5 @@
 #include "engine/metrics/statistics.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,7 +30,7 @@ TEST(Statistics, Summaries) {
 TEST(Statistics, Names) {
     EXPECT_EQ(statisticFromName("max"), Statistic::Max);
     EXPECT_EQ(statisticFromName("rate"), Statistic::Rate);
-    EXPECT_EQ(test::errorText([] { statisticFromName("avg"); }),
+    EXPECT_EQ(errorText([] { statisticFromName("avg"); }),
               "unknown statistic 'avg'; allowed: median, mean, min, max, sum, count, rate, stddev, "
               "p95, p99");
 }

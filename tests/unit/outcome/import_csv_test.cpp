@@ -1,16 +1,11 @@
 #include "runner/outcome/import_csv.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 
 #include "tests/support/support.h"
 
 namespace gfxrepro::outcome {
 namespace {
-
-using gfxrepro::test::errorText;
-using gfxrepro::test::TemporaryFolder;
 
 class ImportCsv : public testing::Test {
   protected:

@@ -1,8 +1,5 @@
 #include "runner/records/images.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
 #include <functional>
 
@@ -14,7 +11,7 @@
 namespace gfxrepro::records {
 namespace {
 
-using Images = test::FolderTest;
+using Images = FolderTest;
 
 TEST_F(Images, AppendedAndRead) {
     EXPECT_TRUE(readImages(folder.path()).empty());
@@ -23,18 +20,18 @@ TEST_F(Images, AppendedAndRead) {
                             "images/b.png", "images/b.exr", "", "surface"};
     ImageWriter(folder.path()).append({first});
     ImageWriter(folder.path()).append({second});
-    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(first, second));
+    EXPECT_THAT(readImages(folder.path()), ElementsAre(first, second));
     ImageEntry again = first;
     again.png = "images/c.png";
     ImageWriter(folder.path()).append({again});
-    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(again, second));
+    EXPECT_THAT(readImages(folder.path()), ElementsAre(again, second));
 }
 
 TEST_F(Images, TornLineIsPassedOver) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
     ImageWriter(folder.path()).append({entry});
     std::ofstream(folder.path() / "images/index.csv", std::ios::app) << "def,t,0,\"to";
-    EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
+    EXPECT_THAT(readImages(folder.path()), ElementsAre(entry));
     ImageWriter(folder.path()).append({{"def", "t", 0, "n", "images/p", "images/e", "title"}});
     EXPECT_EQ(readImages(folder.path()).size(), 2u);
 }
@@ -57,42 +54,42 @@ TEST_F(Images, WhatIsNotAsItWasWrittenIsNamed) {
     entry.pngSha256 = written("images/a.png");
     entry.exrSha256 = written("images/a.exr");
     ImageWriter(folder.path()).append({entry});
-    EXPECT_THAT(changedImages(folder.path()), testing::IsEmpty());
+    EXPECT_THAT(changedImages(folder.path()), IsEmpty());
     folder.write("images/a.png", "another");
-    std::filesystem::remove(folder.path() / "images/a.exr");
+    fs::remove(folder.path() / "images/a.exr");
     EXPECT_THAT(changedImages(folder.path()),
-                testing::ElementsAre("images/a.png was changed", "images/a.exr is missing"));
+                ElementsAre("images/a.png was changed", "images/a.exr is missing"));
 }
 
 TEST_F(Images, AListThatIsNoLongerTheWritersIsNotWrittenTo) {
     const ImageEntry entry{"abc", "t", 0, "n", "images/p", "images/e", "title"};
     const auto index = folder.path() / "images/index.csv";
     const auto disturbed = [&](const std::function<void(const std::string& whole)>& disturb) {
-        std::filesystem::remove(index);
+        fs::remove(index);
         ImageWriter writer(folder.path());
         writer.append({entry});
         writer.requireOurs();
         disturb(readFile(index));
-        EXPECT_EQ(test::errorText([&] { writer.append({}); }, folder.path()),
-                  test::errorText([&] { writer.append({entry}); }, folder.path()));
-        return test::errorText([&] { writer.requireOurs(); }, folder.path());
+        EXPECT_EQ(errorText([&] { writer.append({}); }, folder.path()),
+                  errorText([&] { writer.append({entry}); }, folder.path()));
+        return errorText([&] { writer.requireOurs(); }, folder.path());
     };
     const std::string lost =
         "DIR/images/index.csv: was removed, replaced or changed while a run wrote to it: rows are "
         "lost; nothing more is measured into it";
-    EXPECT_EQ(disturbed([&](const std::string&) { std::filesystem::remove(index); }), lost);
+    EXPECT_EQ(disturbed([&](const std::string&) { fs::remove(index); }), lost);
     EXPECT_EQ(disturbed([&](const std::string& whole) { writeFileAtomic(index, whole); }), lost);
     EXPECT_EQ(
         disturbed([&](const std::string& whole) { folder.write("images/index.csv", whole + "x"); }),
         lost);
     EXPECT_EQ(disturbed([&](const std::string&) { folder.write("images/index.csv", ""); }), lost);
 
-    std::filesystem::remove(index);
+    fs::remove(index);
     ImageWriter none(folder.path());
     none.append({});
-    EXPECT_FALSE(std::filesystem::exists(index));
+    EXPECT_FALSE(fs::exists(index));
     folder.write("images/index.csv", "");
-    EXPECT_EQ(test::errorText([&] { none.append({entry}); }, folder.path()),
+    EXPECT_EQ(errorText([&] { none.append({entry}); }, folder.path()),
               "DIR/images/index.csv: was made by another while a run had no images; nothing more "
               "is measured into its folder");
 }
@@ -102,14 +99,14 @@ TEST_F(Images, ACutHeadIsWrittenAgain) {
     for (const char* head : {"", "case,tab"}) {
         folder.write("images/index.csv", head);
         ImageWriter(folder.path()).append({entry});
-        EXPECT_THAT(readImages(folder.path()), testing::ElementsAre(entry));
+        EXPECT_THAT(readImages(folder.path()), ElementsAre(entry));
     }
 }
 
 TEST_F(Images, OtherColumnsAreAnError) {
     folder.write("images/index.csv", "case,table\na,b\n");
     EXPECT_EQ(
-        test::errorText([&] { readImages(folder.path()); }, folder.path()),
+        errorText([&] { readImages(folder.path()); }, folder.path()),
         "DIR/images/index.csv:1: expected the columns "
         "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256, found case,table");
 }
@@ -117,7 +114,7 @@ TEST_F(Images, OtherColumnsAreAnError) {
 TEST_F(Images, MalformedRowIsAnError) {
     const auto refused = [&](const std::string& text) {
         folder.write("images/index.csv", text);
-        return test::errorText([&] { readImages(folder.path()); }, folder.path());
+        return errorText([&] { readImages(folder.path()); }, folder.path());
     };
     const std::string without = "case,table,frame,name,png,exr,title,truth_of";
     const std::string header = without + ",png_sha256,exr_sha256";

@@ -1,8 +1,5 @@
 #include "runner/records/records.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -13,9 +10,6 @@
 
 namespace gfxrepro::records {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 constexpr const char* kHeader =
     "schema,case,table,technique,method,scene,frame,repeat,process,lane,pass,metric,unit,value,"
@@ -67,7 +61,7 @@ Record sample(const std::string& caseId, double value) {
     return record;
 }
 
-using Records = test::FolderTest;
+using Records = FolderTest;
 
 TEST_F(Records, WriteTheDocumentedColumns) {
     const auto path = folder.path() / "records.csv";
@@ -107,7 +101,7 @@ TEST_F(Records, FailedCaseHasAnEmptyValue) {
     row.status = Status::DeviceLost;
     row.message = "the context was reset";
     RecordWriter(path).append({row});
-    EXPECT_THAT(readFile(path), testing::EndsWith(",ms,,device-lost,the context was reset,1\n"));
+    EXPECT_THAT(readFile(path), EndsWith(",ms,,device-lost,the context was reset,1\n"));
     const std::vector<Record> read = readRecords(path);
     ASSERT_EQ(read.size(), 1u);
     EXPECT_TRUE(std::isnan(read[0].value));
@@ -251,7 +245,7 @@ TEST_F(Records, AWholeFileTakesThePlaceOfAnother) {
     const auto path = folder.path() / "records.csv";
     RecordWriter(path).append({sample("abc", 1.0)});
     writeRecords(path, {sample("def", 2.0), sample("ghi", 3.0)});
-    EXPECT_THAT(readRecords(path), testing::ElementsAre(sample("def", 2.0), sample("ghi", 3.0)));
+    EXPECT_THAT(readRecords(path), ElementsAre(sample("def", 2.0), sample("ghi", 3.0)));
 }
 
 TEST(Csv, AFileIsReadAsItsText) {
@@ -283,7 +277,7 @@ TEST_F(Records, AUnitThatLacksRowsIsAnErrorUnlessItIsTheLast) {
 TEST_F(Records, WriterRefusesAnotherFile) {
     const auto path = folder.write("notes.txt", "my notes\n");
     EXPECT_THAT(errorText([&] { RecordWriter writer(path); }, folder.path()),
-                testing::EndsWith("found 'my notes'"));
+                EndsWith("found 'my notes'"));
     EXPECT_EQ(readFile(path), "my notes\n");
 }
 

@@ -1,8 +1,6 @@
 #include "runner/regression/comparison.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -572,9 +570,9 @@ TEST(Comparison, WhatIsThereOnOneSideAloneHasNoNumberOnTheOther) {
     comparison.differences =
         compare({{test::timeOf("a"), values}}, {{test::timeOf("b"), values}}, Pairing::ByTurns);
     const std::string text = markdown(comparison);
-    EXPECT_THAT(text, testing::HasSubstr(" | 10 |  | ")) << "a";
-    EXPECT_THAT(text, testing::HasSubstr(" |  | 10 ms | ")) << "b";
-    EXPECT_THAT(text, testing::Not(testing::HasSubstr("| 0 ms |")));
+    EXPECT_THAT(text, HasSubstr(" | 10 |  | ")) << "a";
+    EXPECT_THAT(text, HasSubstr(" |  | 10 ms | ")) << "b";
+    EXPECT_THAT(text, Not(HasSubstr("| 0 ms |")));
 }
 
 TEST(Comparison, WhatFailsAfterwardsAloneIsAnAlarm) {

@@ -1,8 +1,6 @@
 #include "runner/regression/nightly_history.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -13,12 +11,9 @@
 namespace gfxrepro::regression {
 namespace {
 
-using gfxrepro::test::errorText;
-using gfxrepro::test::TemporaryFolder;
-
 TEST(History, KeepsNightsByMachine) {
     const TemporaryFolder folder;
-    const std::filesystem::path path = folder.path() / "history.csv";
+    const fs::path path = folder.path() / "history.csv";
     EXPECT_TRUE(readHistory(path, "a").empty());
     const SeriesKey key = test::timeOf("m, \"quoted\"");
     appendNight(path, {"2026-01-01T00:00:00Z", "abc", "a", {{key, {1.0, 3.0, 2.0}}}});
@@ -31,7 +26,7 @@ TEST(History, KeepsNightsByMachine) {
 
 TEST(History, CutsOffATornNightAndNamesABadRow) {
     const TemporaryFolder folder;
-    const std::filesystem::path path = folder.path() / "history.csv";
+    const fs::path path = folder.path() / "history.csv";
     appendNight(path, {"t", "abc", "a", {{test::timeOf("m"), {1.0}}}});
     const std::string whole = readFile(path);
     folder.write("history.csv", whole + "2026,torn");
@@ -122,9 +117,6 @@ TEST(History, NeedsNightsOnEitherSideAndAnEffect) {
     EXPECT_FALSE(findStep(nights(1, 24, 12, 2.0, 0.01), significance, 0.02));
     EXPECT_TRUE(findStep(nights(1, 26, 13, 2.0, 0.01), significance, 0.02));
 }
-
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kSignificance = 1e-5;
 constexpr double kFloor = 0.05;

@@ -1,8 +1,5 @@
 #include "runner/regression/picture_comparison.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <limits>
 
@@ -18,9 +15,7 @@
 namespace gfxrepro::regression {
 namespace {
 
-namespace fs = std::filesystem;
 using image::ImageF;
-using testing::HasSubstr;
 
 /// Two runs of one case, and where their comparison goes.
 class Pictures : public ::testing::Test {
@@ -170,7 +165,7 @@ TEST_F(Pictures, AnotherSizeOrOtherChannelsCannotBeSubtracted) {
     EXPECT_EQ(only().reason, "16 × 16 pixels before, 8 × 16 after");
     EXPECT_TRUE(only().isAlarm());
     EXPECT_FALSE(fs::exists(folder.path() / "out/pictures/p-1/b-flat0-flip.png"));
-    EXPECT_THAT(markdown({{only()}}), testing::Not(HasSubstr("[difference]")));
+    EXPECT_THAT(markdown({{only()}}), Not(HasSubstr("[difference]")));
     record("b", "flat", ImageF(16, 16, 1, 0.25F));
     EXPECT_EQ(only().reason, "the channels B, G, R before, Y after");
 }

@@ -1,8 +1,6 @@
 #include "runner/report/curves.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +17,6 @@
 
 namespace gfxrepro::report {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -152,7 +147,7 @@ TEST(FigureSvg, IntervalsStayWithinTheAxis) {
     const auto bars = findAll(svg, "d=\"(M[\\d.]+ [\\d.]+L[\\d.]+ [\\d.]+)\" stroke-width=\"1.2\"");
     ASSERT_EQ(bars.size(), 3U);
     // The plot ends 270 below 49.
-    EXPECT_THAT(bars[0], testing::ContainsRegex("M[0-9.]+ 319L"));
+    EXPECT_THAT(bars[0], ContainsRegex("M[0-9.]+ 319L"));
     figure.panels[0].curves[0].points[0].interval = {kNan, kNan};
     svg = svgOf(figure);
     EXPECT_THAT(svg, Not(HasSubstr("(95 %")));
@@ -179,8 +174,7 @@ TEST(FigureSvg, NamesWhatIsThere) {
           "<title>two, printed: size 1, time (ms) 0.2</title>", "<title>A title</title>"}) {
         EXPECT_THAT(svg, HasSubstr(text));
     }
-    EXPECT_THAT(svg,
-                testing::StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"wide\""));
+    EXPECT_THAT(svg, StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"wide\""));
     EXPECT_THAT(svg, HasSubstr(" role=\"img\" "));
     const std::string alone = svgOf(figureOf({point(1, 10), point(4, 30)}));
     EXPECT_THAT(alone, Not(HasSubstr(">one</text>")));  // its axis has its name
@@ -220,8 +214,8 @@ TEST(FigureSvg, PanelsStandInTwoColumnsOrOne) {
     const auto placesOf = [&](double width, const std::string& text) {
         return findAll(svgOf(figure, width), "<text x=\"([\\d.]+)\"[^>]*>" + text + "</text>");
     };
-    EXPECT_THAT(placesOf(kWidePx, "panel \\d"), testing::ElementsAre("0", "313", "0"));
-    EXPECT_THAT(placesOf(kNarrowPx, "panel \\d"), testing::ElementsAre("0", "0", "0"));
+    EXPECT_THAT(placesOf(kWidePx, "panel \\d"), ElementsAre("0", "313", "0"));
+    EXPECT_THAT(placesOf(kNarrowPx, "panel \\d"), ElementsAre("0", "0", "0"));
     EXPECT_EQ(placesOf(kWidePx, "size").size(), 2U);  // below the lowest of each column
     EXPECT_EQ(placesOf(kNarrowPx, "size").size(), 1U);
     EXPECT_EQ(placesOf(kWidePx, "time \\(ms\\)").size(), 1U);  // of all
@@ -237,9 +231,8 @@ TEST(FigureSvg, LongTextsAreBroken) {
     for (const std::string& line : findAll(svgOf(figure, kNarrowPx), ">([^<]*)</text>")) {
         EXPECT_LE(textWidth(line), kNarrowPx) << line;
     }
-    EXPECT_THAT(wrapped("one two three", textWidth("one two")),
-                testing::ElementsAre("one two", "three"));
-    EXPECT_THAT(wrapped("one", 1.0), testing::ElementsAre("one"));
+    EXPECT_THAT(wrapped("one two three", textWidth("one two")), ElementsAre("one two", "three"));
+    EXPECT_THAT(wrapped("one", 1.0), ElementsAre("one"));
 }
 
 /// What XML might take for something else.
@@ -267,7 +260,7 @@ TEST(FigureSvg, DrawsWhatLittleThereIs) {
     EXPECT_EQ(pointsOf(svgOf(figureOf({point(3, 7)}))).size(), 1U);
     EXPECT_EQ(pointsOf(svgOf(figureOf({point(1, 7), point(2, 7), point(3, 7)}))).size(), 3U);
     EXPECT_THAT(pointsOf(svgOf(figureOf({point(3, 7)})))[0],
-                testing::EndsWith(fmt::format(" {:.5g}", middle)));
+                EndsWith(fmt::format(" {:.5g}", middle)));
     EXPECT_EQ(pointsOf(svgOf(figureOf({point(0, 0), point(kNan, 1), point(1, kNan),
                                        point(1, std::numeric_limits<double>::infinity())})))
                   .size(),
@@ -331,7 +324,7 @@ tables::Recorded curveRecords() {
 }
 
 TEST(Curves, EachPlotIsAFile) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto tables = tables::buildTables({curveExperiment()}, curveRecords());
     const auto curves = drawCurves(folder.path(), tables, {curveExperiment()});
     ASSERT_EQ(curves.size(), 2U);
@@ -344,20 +337,20 @@ TEST(Curves, EachPlotIsAFile) {
         const std::string svg = readFile(folder.path() / "plots" / file);
         EXPECT_EQ(test::xmlProblem(svg, ids), "");
         EXPECT_THAT(svg, HasSubstr("class=\"wide\""));
-        EXPECT_THAT(curve.svg, testing::StartsWith(svg));
+        EXPECT_THAT(curve.svg, StartsWith(svg));
         EXPECT_THAT(curve.svg, HasSubstr("class=\"narrow\""));
     }
     EXPECT_EQ(drawCurves("", tables, {curveExperiment()})[1].svg, curves[1].svg);
 }
 
 TEST(Curves, NothingIsDrawnOfNothing) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto stale = folder.write("plots/zju2005-9.9.svg", "old");
     const auto curves = drawCurves(folder.path(), tables::buildTables({curveExperiment()}, {}),
                                    {curveExperiment()});
     EXPECT_EQ(curves.at(0).problem, "no value was measured");
     EXPECT_EQ(curves[0].svg, "");
-    EXPECT_FALSE(std::filesystem::exists(stale));
+    EXPECT_FALSE(fs::exists(stale));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // Pictures on their way into a page.
 #include "runner/report/gallery.h"
 
-#include <gmock/gmock.h>
-
 #include <random>
 
 #include "engine/image/png_io.h"
@@ -12,7 +10,7 @@ namespace gfxrepro::report {
 namespace {
 
 /// A picture that compresses to nearly what it has of bytes: three a pixel.
-void writeNoise(const std::filesystem::path& file, int sizePx, unsigned seed = 1) {
+void writeNoise(const fs::path& file, int sizePx, unsigned seed = 1) {
     std::mt19937 random(seed);
     image::Image8 picture(sizePx, sizePx, 3);
     for (int y = 0; y < sizePx; ++y) {
@@ -26,8 +24,8 @@ void writeNoise(const std::filesystem::path& file, int sizePx, unsigned seed = 1
 }
 
 TEST(Gallery, PicturesInsideAFileAreReducedUntilItCanBeSent) {
-    const test::TemporaryFolder run;
-    const std::vector<std::filesystem::path> runs = {run.path()};
+    const TemporaryFolder run;
+    const std::vector<fs::path> runs = {run.path()};
     EXPECT_EQ(reducedPxOf(runs, 1), 512) << "no pictures";
     writeNoise(run.path() / "images/a.png", 1024);  // 3.1 MB
     records::ImageWriter(run.path()).append({{"case", "t/1", 0, "noise", "images/a.png", "", "t"}});
@@ -36,7 +34,7 @@ TEST(Gallery, PicturesInsideAFileAreReducedUntilItCanBeSent) {
     EXPECT_EQ(reducedPxOf(runs, 300'000), 192);
     EXPECT_EQ(reducedPxOf(runs, 1), 128);
     const auto widthBy = [&](int reducedPx) {
-        const test::TemporaryFolder made;
+        const TemporaryFolder made;
         return gatherShots({run.path(), made.path(), made.path() / "page.html",
                             GalleryPlace::Embedding::Reduced, reducedPx})
             .at(0)
@@ -47,7 +45,7 @@ TEST(Gallery, PicturesInsideAFileAreReducedUntilItCanBeSent) {
 }
 
 TEST(Gallery, PicturesThatAreAlikeAreShownByOnesFiles) {
-    const test::TemporaryFolder run;
+    const TemporaryFolder run;
     records::ImageWriter writer(run.path());
     // Of three cases the pictures are the same, and the truths of two.
     for (const std::string id : {"a", "b", "c"}) {
@@ -67,7 +65,7 @@ TEST(Gallery, PicturesThatAreAlikeAreShownByOnesFiles) {
     EXPECT_EQ(a.flipMean, b.flipMean);
     EXPECT_NE(a.flip, c.flip);
     EXPECT_NE(a.flipMean, c.flipMean);
-    EXPECT_FALSE(std::filesystem::exists(run.path() / "thumbnails/b-result-flip.png"));
+    EXPECT_FALSE(fs::exists(run.path() / "thumbnails/b-result-flip.png"));
     // Each is still its own case's.
     EXPECT_EQ(b.caseId + b.table + b.caseTitle + b.name + b.png + b.truth,
               "bt/bcase bresultimages/b-result.pngt");
@@ -77,7 +75,7 @@ TEST(Gallery, PicturesThatAreAlikeAreShownByOnesFiles) {
 }
 
 TEST(Gallery, SaysHowFarItIs) {
-    const test::TemporaryFolder run;
+    const TemporaryFolder run;
     records::ImageWriter writer(run.path());
     for (const char* name : {"a", "b", "c"}) {
         const std::string file = std::string("images/") + name + ".png";
@@ -90,7 +88,7 @@ TEST(Gallery, SaysHowFarItIs) {
         done.push_back(count);
     };
     gatherShots({run.path(), run.path(), run.path() / "report.html"}, progress);
-    EXPECT_THAT(done, testing::ElementsAre(1, 2, 3));
+    EXPECT_THAT(done, ElementsAre(1, 2, 3));
 }
 
 }  // namespace

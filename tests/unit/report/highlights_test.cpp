@@ -1,16 +1,15 @@
 // Which pictures stand for a document.
 #include "runner/report/pages.h"
 
-#include <gmock/gmock.h>
-
 #include <cmath>
+
+#include "tests/support/support.h"
 
 namespace gfxrepro::report {
 namespace {
 
 using claims::ClaimResult;
 using claims::Verdict;
-using testing::ElementsAre;
 
 ClaimResult claim(const std::string& id, Verdict verdict) {
     ClaimResult result;

@@ -1,18 +1,13 @@
 #include "runner/report/writers.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <regex>
 #include <set>
 
+#include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::report {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 std::vector<std::string> keysOf(const std::string& latex) {
     const std::regex definition(R"(\\gfxreproset\{([^}]*)\}\{)");
@@ -40,9 +35,9 @@ layout: {rows: scene, columns: {draw_ms: {metric: gpu_time_ms}}, cell: "{median:
 printed: {values: "scene,draw_ms\nmodels/duck,9.0"}
 )",
                                                    maker.records()));
-    EXPECT_THAT(keysOf(latex),
-                testing::ElementsAre(
-                    "zju2005/9.9",  // its parameters
+    EXPECT_THAT(
+        keysOf(latex),
+        ElementsAre("zju2005/9.9",  // its parameters
                     "zju2005/9.9/notes", "zju2005/9.9/models-duck/draw_ms/printed",
                     "zju2005/9.9/models-duck/draw_ms", "zju2005/9.9/models-duck/draw_ms/low",
                     "zju2005/9.9/models-duck/draw_ms/high",
@@ -84,8 +79,8 @@ layout: {rows: scene, columns: {e: {metric: error}}}
 )",
                                                    {}));
     EXPECT_THAT(keysOf(latex),
-                testing::ElementsAre("zju2005/9.9", "zju2005/9.9/notes", "zju2005/9.9/ring.obj/e",
-                                     "zju2005/9.9/-a-x.obj/e", "zju2005/9.9/-b-x.obj/e"));
+                ElementsAre("zju2005/9.9", "zju2005/9.9/notes", "zju2005/9.9/ring.obj/e",
+                            "zju2005/9.9/-a-x.obj/e", "zju2005/9.9/-b-x.obj/e"));
     EXPECT_THAT(latex, HasSubstr("{ring.obj}\n& "));
     EXPECT_THAT(latex, Not(HasSubstr("/home/me")));
 }
@@ -104,7 +99,7 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
     EXPECT_EQ(keys[1], "zju2005/9.9/notes");
     keys.erase(keys.begin(), keys.begin() + 2);
     for (const std::string& key : keys) {
-        EXPECT_THAT(key, testing::MatchesRegex("zju2005/9\\.9/[-A-Za-z0-9.+_]+/[-A-Za-z0-9.+_]+"));
+        EXPECT_THAT(key, MatchesRegex("zju2005/9\\.9/[-A-Za-z0-9.+_]+/[-A-Za-z0-9.+_]+"));
     }
     EXPECT_EQ(keys[0], "zju2005/9.9/a-b/x_1");
     EXPECT_EQ(keys[1], "zju2005/9.9/a-b/x-1");
@@ -126,7 +121,7 @@ TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
     EXPECT_THAT(latex, HasSubstr("%     \\par\\smallskip\\parbox{\\linewidth}"
                                  "{\\gfxrepro{p/1/notes}}\n%   \\end{table*}\n"));
     EXPECT_THAT(latex, Not(HasSubstr("\n\\par")));
-    EXPECT_THAT(latex, testing::EndsWith("\\end{tabular}%\n")) << "nothing widens a box around it";
+    EXPECT_THAT(latex, EndsWith("\\end{tabular}%\n")) << "nothing widens a box around it";
 }
 
 TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
@@ -155,7 +150,7 @@ TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
     cell.printed = "5";
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
-    EXPECT_THAT(keysOf(latex), testing::ElementsAre("p/1/1/b/printed"));
+    EXPECT_THAT(keysOf(latex), ElementsAre("p/1/1/b/printed"));
     EXPECT_THAT(latex,
                 HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} \\\\\n\\midrule\n{1}\n& "
                           "\\gfxrepro{p/1/1/b/printed} \\\\\n"));

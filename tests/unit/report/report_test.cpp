@@ -1,8 +1,6 @@
 #include "runner/report/report.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
@@ -25,8 +23,6 @@ namespace gfxrepro::report {
 namespace {
 
 using records::Status;
-using testing::HasSubstr;
-using testing::Not;
 
 const claims::ReportContext kContext{"llvmpipe", "software", "quick", "abc123",
                                      "gfxrepro reproduce"};
@@ -76,7 +72,7 @@ void judge(ReportRun& run, const tables::Recorded& recorded) {
     run.curves = drawCurves(run.folder, run.tables, run.experiments);
 }
 
-ReportRun runIn(const std::filesystem::path& folder, double drawMs = 8.0) {
+ReportRun runIn(const fs::path& folder, double drawMs = 8.0) {
     ReportRun run;
     run.folder = folder;
     run.context = kContext;
@@ -101,7 +97,7 @@ image::Image8 picture(std::uint8_t differing) {
     return result;
 }
 
-using Report = test::FolderTest;
+using Report = FolderTest;
 
 TEST_F(Report, IsOneSafeFile) {
     ReportRun run = runIn(folder.path());
@@ -261,7 +257,7 @@ TEST_F(Report, CellsNameTheirCases) {
 
 TEST_F(Report, ImagesWithATruthGetAFlipMap) {
     const ReportRun run = runIn(folder.path());
-    std::filesystem::create_directories(folder.path() / "images/x");
+    fs::create_directories(folder.path() / "images/x");
     image::writePng(folder.path() / "images/x/result.png", picture(255));
     image::writePng(folder.path() / "images/x/truth.png", picture(128));
     records::ImageWriter(folder.path())
@@ -271,7 +267,7 @@ TEST_F(Report, ImagesWithATruthGetAFlipMap) {
     const std::string html = readFile(folder.path() / "report.html");
     EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"A-zju2005-9.9-1\""));
     EXPECT_THAT(html, HasSubstr("class=\"error\" data-of=\"A-zju2005-9.9-0\"><img src=\"data:"));
-    EXPECT_THAT(html, testing::ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
+    EXPECT_THAT(html, ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
     EXPECT_THAT(html, Not(HasSubstr("FLIP 0.0000")));
     const image::Image8 map = image::readPng8(folder.path() / "thumbnails/x/result-flip.png");
     EXPECT_EQ(map.width(), 8);
@@ -287,13 +283,12 @@ TEST_F(Report, LargeGalleriesLieBesideThePage) {
         state = state * 1664525U + 1013904223U;
         value = static_cast<std::uint8_t>(state >> 24U);
     }
-    std::filesystem::create_directories(folder.path() / "images");
+    fs::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a b#1.png", noise);
     for (int i = 1; i <= 20; ++i) {
         const std::string name = fmt::format("images/a b#{}.png", i);
         if (i > 1) {
-            std::filesystem::create_hard_link(folder.path() / "images/a b#1.png",
-                                              folder.path() / name);
+            fs::create_hard_link(folder.path() / "images/a b#1.png", folder.path() / name);
         }
         records::ImageWriter(folder.path())
             .append({{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
@@ -310,7 +305,7 @@ TEST_F(Report, LargeGalleriesLieBesideThePage) {
 }
 
 TEST_F(Report, EmbedsEveryPictureWhereItIsAsked) {
-    const test::TemporaryFolder out;
+    const TemporaryFolder out;
     const ReportRun run = runIn(folder.path());
     image::Image8 noise(600, 620, 3);
     std::uint32_t state = 1;
@@ -320,7 +315,7 @@ TEST_F(Report, EmbedsEveryPictureWhereItIsAsked) {
     }
     for (int i = 1; i <= 20; ++i) {  // a megabyte each: more than a page takes unasked
         const std::string name = fmt::format("images/{}.png", i);
-        std::filesystem::create_directories(folder.path() / "images");
+        fs::create_directories(folder.path() / "images");
         image::writePng(folder.path() / name, noise);
         records::ImageWriter(folder.path())
             .append(
@@ -338,12 +333,12 @@ TEST_F(Report, EmbedsEveryPictureWhereItIsAsked) {
     EXPECT_THAT(html, Not(HasSubstr("data-full=")));
     EXPECT_THAT(html, HasSubstr("width=\"309\" height=\"319\""));
     int files = 0;
-    for (const auto& file : std::filesystem::directory_iterator(out.path())) {
+    for (const auto& file : fs::directory_iterator(out.path())) {
         EXPECT_EQ(file.path().filename(), "one.html");
         ++files;
     }
     EXPECT_EQ(files, 1);
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "thumbnails"));
+    EXPECT_FALSE(fs::exists(folder.path() / "thumbnails"));
 }
 
 /// A picture of its own brightness.
@@ -369,7 +364,7 @@ layout:
             const std::string id = maker.records().back().caseId;
             for (const bool isTruth : {false, true}) {
                 const std::string file = fmt::format("images/{}.png", images.size());
-                std::filesystem::create_directories(folder.path() / "images");
+                fs::create_directories(folder.path() / "images");
                 const auto value = static_cast<std::uint8_t>(isTruth ? scene[7] : images.size());
                 image::writePng(folder.path() / file, grey(value));
                 images.push_back({id, "zju2005/9.9", 0, isTruth ? "truth" : "result", file, "",
@@ -403,7 +398,7 @@ layout:
 TEST_F(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     ReportRun run = runIn(folder.path());
     const std::string id = run.records[0].caseId;
-    std::filesystem::create_directories(folder.path() / "images");
+    fs::create_directories(folder.path() / "images");
     std::vector<records::ImageEntry> images;
     for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
         const std::string file = fmt::format("images/{}.png", name);
@@ -551,7 +546,7 @@ TEST_F(Report, SaysHowNearADocumentsNumbersCome) {
     writeReport(folder.path() / "report.html", {&run, 1});
     EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr("How near")));
     writeNearness(folder.path(), run.experiments, run.tables);
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / "nearness.csv"));
+    EXPECT_FALSE(fs::exists(folder.path() / "nearness.csv"));
 }
 
 /// The steps of a frame stand behind what they come to.
@@ -593,7 +588,7 @@ TEST_F(Report, FirstScreenSaysWhatReproduced) {
     }
     run.experiments[0].claims[1].because = {{"fails", std::nullopt, std::nullopt, std::nullopt,
                                              "the time is of another machine", "zju2005.md#b"}};
-    std::filesystem::create_directories(folder.path() / "images");
+    fs::create_directories(folder.path() / "images");
     image::writePng(folder.path() / "images/a.png", grey(100));
     records::ImageWriter(folder.path())
         .append({{"case", "zju2005/9.9", 0, "surface_0", "images/a.png", "", "t"}});
@@ -601,7 +596,7 @@ TEST_F(Report, FirstScreenSaysWhatReproduced) {
         "zju2005", "Thesis on <models>", {{"Later", {"9.9"}}, {"Earlier", {"figure-1"}}}};
     run.context.tried[{"zju2005/9.9", "A"}] = {claims::Verdict::Holds, "padding (of 3 tried)"};
     judge(run, records());
-    const std::filesystem::path findings = folder.path().parent_path() / "a b";
+    const fs::path findings = folder.path().parent_path() / "a b";
     writeReport(folder.path() / "report.html", {&run, 1}, {{document}, false, {}, findings});
     const std::string html = readFile(folder.path() / "report.html");
     writeReport(folder.path() / "sent.html", {&run, 1}, {{document}, true, {}, findings});
@@ -667,12 +662,12 @@ TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
     EXPECT_LT(html.find("A is faster than B."), html.find("<table class=\"results\">"));
     EXPECT_THAT(html, HasSubstr("<summary>Remarks: 1</summary>\n<p><span class=\"soft\"></span>C "
                                 "and B cannot be"));
-    EXPECT_THAT(html, testing::ContainsRegex("<td class=\"num soft\"[^>]*>8.0"));
+    EXPECT_THAT(html, ContainsRegex("<td class=\"num soft\"[^>]*>8.0"));
     EXPECT_THAT(html, HasSubstr("a grey ratio is within the noise"));
 }
 
 TEST_F(Report, RunsStandSideBySide) {
-    const test::TemporaryFolder a, b, out;
+    const TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
     runs[1].experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
     judge(runs[1], records(12.0));
@@ -708,7 +703,7 @@ TEST_F(Report, RunsStandSideBySide) {
 }
 
 TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
-    const test::TemporaryFolder a, b, out;
+    const TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
     config::PlotSpec plot;
     plot.x = "error";
@@ -735,7 +730,7 @@ TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
 }
 
 TEST_F(Report, KeptVerdictsStandBesideARun) {
-    const test::TemporaryFolder a, kept;
+    const TemporaryFolder a, kept;
     const auto file =
         kept.write("claims.csv", kClaimsHeader +
                                      "A,,zju2005/9.9,gpu,quick,,,,fails,,12,draw_ms ≤ 10,-2,,,bias "
@@ -757,7 +752,7 @@ TEST_F(Report, KeptVerdictsStandBesideARun) {
 TEST_F(Report, RefusesVerdictsThatAreNone) {
     const auto errorOf = [&](const std::string& text) {
         const auto file = folder.write("claims.csv", text);
-        return test::errorText([&] { claims::readClaims(file); }, folder.path());
+        return errorText([&] { claims::readClaims(file); }, folder.path());
     };
     EXPECT_EQ(errorOf(kClaimsHeader + "A,,t,,,,,,perhaps,,,,,,,,,,\n"),
               "DIR/claims.csv:2: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
@@ -777,10 +772,10 @@ TEST_F(Report, RunsThatAreKeptAreReadBack) {
     ASSERT_EQ(runs.size(), 1U);
     EXPECT_EQ(runs[0].device, "A, B");
     EXPECT_EQ(runs[0].cores, 16);
-    EXPECT_THAT(runs[0].scans, testing::ElementsAre("s", "t"));
+    EXPECT_THAT(runs[0].scans, ElementsAre("s", "t"));
     EXPECT_EQ(runs[0].command, "gfxrepro");
     folder.write("runs.csv", header + "p/1,0a1b,,gpu,A,4.5,C,many,,,\n");
-    EXPECT_EQ(test::errorText([&] { claims::readKeptRuns(file); }, folder.path()),
+    EXPECT_EQ(errorText([&] { claims::readKeptRuns(file); }, folder.path()),
               "DIR/runs.csv:2: cores: 'many' is no number");
 }
 

@@ -1,18 +1,16 @@
 #include "runner/report/svg.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "tests/support/support.h"
+
 namespace gfxrepro::report {
 namespace {
 
 using testing::DoubleEq;
-using testing::ElementsAre;
 
 constexpr double kGap = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -90,9 +88,9 @@ TEST(PlotAxis, LinearTicksAreRoundEverywhere) {
                 ASSERT_GE(ticks.size(), 2U) << low << " " << high;
                 const double step = ticks[1].value - ticks[0].value;
                 const double mantissa = step / std::pow(10.0, std::floor(std::log10(step) + 1e-6));
-                EXPECT_THAT(mantissa, testing::AnyOf(testing::DoubleNear(1, 1e-6),
-                                                     testing::DoubleNear(2, 1e-6),
-                                                     testing::DoubleNear(5, 1e-6)));
+                EXPECT_THAT(mantissa,
+                            AnyOf(testing::DoubleNear(1, 1e-6), testing::DoubleNear(2, 1e-6),
+                                  testing::DoubleNear(5, 1e-6)));
                 EXPECT_LE(static_cast<double>(ticks.size()), length / 30.0 + 2.0);
                 EXPECT_GE(ticks[0].value, low - 1e-6 * step);
                 EXPECT_LE(ticks.back().value, high + 1e-6 * step);

@@ -1,19 +1,14 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
+#include "runner/report/writers.h"
 #include "engine/core/files.h"
 #include "runner/claims/claims.h"
 #include "runner/claims/kept_claims.h"
-#include "runner/report/writers.h"
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::report {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 const claims::ReportContext kWritersContext{"llvmpipe", "software", "quick", "abc123",
                                             "gfxrepro reproduce"};
@@ -55,7 +50,7 @@ tables::Recorded writtenRecords() {
 }
 
 struct Written {
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
     std::string read(const std::string& name) const { return readFile(folder.path() / name); }
 };
 
@@ -63,13 +58,13 @@ TEST(Writers, TableFiles) {
     const Written run;
     writeTables(run.folder.path(), tables::buildTables({writtenExperiment()}, writtenRecords()));
     const std::string csv = run.read("tables/zju2005-9.9.csv");
-    EXPECT_THAT(csv, testing::StartsWith(
-                         "scene,source,error_printed,error_mean_measured,error_mean_low,"
-                         "error_mean_high,error_mean_bounds,error_max_measured,error_max_low,"
-                         "error_max_high,error_max_bounds,error_status,error_at_printed,"
-                         "draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,draw_ms_bounds,"
-                         "draw_ms_status,draw_ms_at_printed,parameters\n"
-                         "models/duck,stand-in,3.00/106,2,1,4,range,4,1,4,range,ok,yes,"));
+    EXPECT_THAT(
+        csv, StartsWith("scene,source,error_printed,error_mean_measured,error_mean_low,"
+                        "error_mean_high,error_mean_bounds,error_max_measured,error_max_low,"
+                        "error_max_high,error_max_bounds,error_status,error_at_printed,"
+                        "draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,draw_ms_bounds,"
+                        "draw_ms_status,draw_ms_at_printed,parameters\n"
+                        "models/duck,stand-in,3.00/106,2,1,4,range,4,1,4,range,ok,yes,"));
     EXPECT_THAT(
         csv,
         HasSubstr(",ok,yes,9.0,8,8,8,95 % interval,ok,yes,Measured at the printed parameters\n"));

@@ -1,7 +1,5 @@
 #include "runner/run/case_filter.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::run {
@@ -54,16 +52,16 @@ TEST(CaseFilter, KeepsWhatHasAllValues) {
 }
 
 TEST(CaseFilter, SaysWhatThereIs) {
-    EXPECT_EQ(test::errorText([] { left({"step=3"}); }),
+    EXPECT_EQ(errorText([] { left({"step=3"}); }),
               "--only step=3: no case has that value; there are 1, 2");
-    EXPECT_EQ(test::errorText([] {
+    EXPECT_EQ(errorText([] {
                   left({"step=1", "packed=true"});
               }),
               "--only: no case has all of step=1, packed=true");
-    EXPECT_EQ(test::errorText([] { left({"stp=3"}); }),
+    EXPECT_EQ(errorText([] { left({"stp=3"}); }),
               "--only stp=3: no case has 'stp'; did you mean 'step'? (axes here: packed, step, "
               "view)");
-    EXPECT_EQ(test::errorText([] { left({"case=cc"}); }),
+    EXPECT_EQ(errorText([] { left({"case=cc"}); }),
               "--only case=cc: no case has an id that begins so; ids change with the program, "
               "'gfxrepro plan' shows them");
 }

@@ -1,6 +1,5 @@
 #include "runner/run/child_process.h"
 
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -59,7 +58,7 @@ TEST(ChildProcess, AProgramIsNotWaitedForBeyondItsLimit) {
 
 TEST(ChildProcess, AnEndThatNobodyToldIsAnError) {
     const auto before = ::signal(SIGCHLD, SIG_IGN);
-    EXPECT_EQ(test::errorText([] {
+    EXPECT_EQ(errorText([] {
                   runToEnd({"/bin/sh", "-c", "exit 3"}, 60s);
               }),
               "cannot wait for a worker: No child processes");
@@ -68,7 +67,7 @@ TEST(ChildProcess, AnEndThatNobodyToldIsAnError) {
 
 TEST(ChildProcess, AProgramThatPrintsWithoutEndIsEnded) {
     const auto begin = std::chrono::steady_clock::now();
-    EXPECT_EQ(test::errorText([] {
+    EXPECT_EQ(errorText([] {
                   runToEnd({"/bin/sh", "-c", "exec yes"}, 60s);
               }),
               "/bin/sh: ended, as it prints more than 64 MiB");

@@ -1,7 +1,5 @@
 #include "runner/run/ledger.h"
 
-#include <gmock/gmock.h>
-
 #include <nlohmann/json.hpp>
 
 #include "runner/tables/case_records.h"
@@ -10,9 +8,6 @@
 
 namespace gfxrepro::run {
 namespace {
-
-using testing::ElementsAre;
-using testing::Pair;
 
 class Still : public technique::Technique {
   public:
@@ -53,7 +48,7 @@ const technique::TechniqueInfo kTechniques[] = {
 
 /// A config with two generated scenes and one of a file; it ends with `lines`.
 struct Ledger {
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
 
     Ledger() {
         for (const char* name : {"grass", "tree"}) {
@@ -88,14 +83,14 @@ struct Ledger {
             const config::Experiment experiment = bound(lines);
             requireRanges(experiment, cases(experiment), catalog(), kTechniques);
         };
-        return test::errorText(check, folder.path());
+        return errorText(check, folder.path());
     }
 };
 
 TEST(ResolveCases, RefusesKeysThatNothingReads) {
     const Ledger ledger;
     const auto errorOf = [&](const std::string& lines) {
-        return test::errorText([&] { ledger.cases(ledger.load(lines)); }, ledger.folder.path());
+        return errorText([&] { ledger.cases(ledger.load(lines)); }, ledger.folder.path());
     };
     EXPECT_EQ(errorOf("scene: scan\nscene_seeds: 5\nmeasure: {lane: quality}\n"),
               "DIR/t.yaml:5:14: 'scene_seeds' is 5, and no case has a generated scene");
@@ -113,7 +108,7 @@ TEST(ResolveCases, RefusesKeysThatNothingReads) {
 
 TEST(ResolveCases, RefusesACaseGivenTwice) {
     const Ledger ledger;
-    EXPECT_EQ(test::errorText(
+    EXPECT_EQ(errorText(
                   [&] {
                       ledger.cases(ledger.load(
                           "sweep: {zip: [{bias: [0.5, 0.5], static: [true, true]}]}\n"));
@@ -126,10 +121,10 @@ TEST(ResolveCases, RefusesACaseGivenTwice) {
 /// A plan of more could not be read any more.
 TEST(ResolveCases, RefusesMoreThanAPlanMayHave) {
     const Ledger ledger;
-    EXPECT_EQ(test::errorText(
-                  [&] { ledger.cases(ledger.load("sweep: {bias: {range: [0, 1, 0.000005]}}\n")); },
+    EXPECT_EQ(
+        errorText([&] { ledger.cases(ledger.load("sweep: {bias: {range: [0, 1, 0.000005]}}\n")); },
                   ledger.folder.path()),
-              "DIR/t.yaml: the plan has 200001 cases; at most 200000 are allowed");
+        "DIR/t.yaml: the plan has 200001 cases; at most 200000 are allowed");
 }
 
 TEST(Ledger, TakesValueAndUnitFromTheCases) {
@@ -296,7 +291,7 @@ TEST(PaperCases, RefuseWhatTheTechniqueDoesNotTake) {
     const Ledger ledger;
     const auto errorOf = [&](const std::string& at) {
         ledger.folder.write("configs/at.yaml", "printed: {at: " + at + "}\n");
-        return test::errorText(
+        return errorText(
             [&] {
                 config::Experiment experiment = ledger.load("extends: at.yaml\n");
                 experiment.paperDocument = experiment.document;
@@ -325,14 +320,14 @@ TEST(Cases, TakeParametersInsteadOfValuesAndDefaults) {
     EXPECT_EQ(bias("params: {bias: 0.1}\nparams_instead: {bias: 0.2}\n"), "0.2");
     EXPECT_EQ(bias("params_instead: {bias: 0.2}\n"), "0.2");
     // What nothing reads is refused where it is given, not where it takes a default's place.
-    EXPECT_EQ(test::errorText([&] { bias("params: {last: 1}\n"); }, ledger.folder.path()),
+    EXPECT_EQ(errorText([&] { bias("params: {last: 1}\n"); }, ledger.folder.path()),
               "DIR/t.yaml:4:16: 'last' needs 'static: true'");
     EXPECT_EQ(bias("params_instead: {last: 1}\n"), "0.5");
     EXPECT_EQ(
-        test::errorText([&] { bias("params_instead: {biass: 1}\n"); }, ledger.folder.path()),
+        errorText([&] { bias("params_instead: {biass: 1}\n"); }, ledger.folder.path()),
         "DIR/t.yaml:4:18: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");
-    EXPECT_EQ(test::errorText([&] { bias("sweep: {bias: [0.1]}\nparams_instead: {bias: 1}\n"); },
-                              ledger.folder.path()),
+    EXPECT_EQ(errorText([&] { bias("sweep: {bias: [0.1]}\nparams_instead: {bias: 1}\n"); },
+                        ledger.folder.path()),
               "DIR/t.yaml:5:18: 'params_instead': 'bias' is swept here");
 }
 
@@ -355,7 +350,7 @@ TEST(Cases, TakeSeedsAndOtherScenes) {
                 ElementsAre(Pair("grass", ""), Pair("grass@4", "grass"), Pair("grass@5", "grass"),
                             Pair("scan", "")));
     const auto errorOf = [&](const std::string& lines) {
-        return test::errorText([&] { scenes(lines); }, ledger.folder.path());
+        return errorText([&] { scenes(lines); }, ledger.folder.path());
     };
     EXPECT_EQ(errorOf("scene: scan\nscene_instead: {grass: tree}\n"),
               "DIR/t.yaml:5:17: 'scene_instead': no case of sweep/t has the scene 'grass'");
@@ -395,8 +390,8 @@ TEST(Cases, TakeTheParametersOfTheirScene) {
 TEST(Cases, RefuseParametersOfNoScene) {
     const Ledger ledger;
     const auto errorOf = [&](const std::string& lines) {
-        return test::errorText([&] { ledger.cases(ledger.load("scene: grass\n" + lines)); },
-                               ledger.folder.path());
+        return errorText([&] { ledger.cases(ledger.load("scene: grass\n" + lines)); },
+                         ledger.folder.path());
     };
     EXPECT_EQ(errorOf("params_by_scene:\n  gras: {bias: 0.2}\n"),
               "DIR/t.yaml:6:3: 'gras': no case has the scene of params_by_scene; did you mean "
@@ -446,7 +441,7 @@ TEST(Cases, TakeParametersOfTheGeneratedScene) {
     EXPECT_EQ(cases[1].recordedParams().find("scene.triangles")->asInteger(), 50000);
 
     const auto errorOf = [&](const std::string& lines) {
-        return test::errorText([&] { scenes(lines); }, ledger.folder.path());
+        return errorText([&] { scenes(lines); }, ledger.folder.path());
     };
     EXPECT_EQ(errorOf("scene: scan\nscene_params: {triangles: 40000}\n"),
               "DIR/t.yaml:5:16: scene 'scan' is not generated, so it has no parameter 'triangles': "
@@ -513,16 +508,16 @@ TEST(Plan, IsNoLargerThanIsRead) {
     const auto file = ledger.folder.path() / "plan.json";
     const std::uintmax_t bytes = planBytes(plan);
     plan.writeFile(file, bytes);
-    EXPECT_EQ(std::filesystem::file_size(file), bytes);
-    std::filesystem::remove(file);
+    EXPECT_EQ(fs::file_size(file), bytes);
+    fs::remove(file);
     const std::string config = plan.experiments.front().file.string();
     const std::string why = ": plan.json would have " + std::to_string(bytes) + " bytes; at most " +
                             std::to_string(bytes - 1) + " are read. Measure it in parts (--only)";
-    EXPECT_EQ(test::errorText([&] { plan.writeFile(file, bytes - 1); }), config + why);
-    EXPECT_FALSE(std::filesystem::exists(file));
+    EXPECT_EQ(errorText([&] { plan.writeFile(file, bytes - 1); }), config + why);
+    EXPECT_FALSE(fs::exists(file));
     requirePlanBytes(plan, kMostPlanBytes);
     plan.experiments.push_back(plan.experiments.front());
-    EXPECT_EQ(test::errorText([&] { requirePlanBytes(plan, kMostPlanBytes + 1); }),
+    EXPECT_EQ(errorText([&] { requirePlanBytes(plan, kMostPlanBytes + 1); }),
               config +
                   " and 1 more: plan.json would have 1073741825 bytes; at most 1073741824 are "
                   "read. Measure it in parts (--only)");

@@ -2,7 +2,6 @@
 #include "runner/run/machine_state.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
@@ -14,13 +13,9 @@
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
 using run::Json;
 using run::MachineReading;
 using run::MachineState;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// A machine of two processors, as its kernel tells of it; seconds since it began to count.
 class Machine {

@@ -1,7 +1,5 @@
 #include "runner/run/manifest.h"
 
-#include <gtest/gtest.h>
-
 #include <set>
 #include <sstream>
 #include <string>
@@ -55,7 +53,7 @@ TEST(Manifest, HoldsWhatLoadersWarnedOf) {
 }
 
 TEST(Manifest, OfAnEarlierVersionMayHaveMore) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file = folder.write("manifest.json", R"({
         "commit": "c", "profile": "quick", "device_class": "gpu", "cpu": "CPU", "cores": 2,
         "gl": {"vendor": "v", "renderer": "r", "version": "4.5", "balance": {"x": 1}},

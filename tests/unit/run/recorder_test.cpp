@@ -1,5 +1,4 @@
 
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
@@ -98,7 +97,7 @@ config::Outputs withTruthOf(const char* picture) {
 }
 
 /// A case whose picture `result` has a truth.
-class Recorded : public test::FolderTest {
+class Recorded : public FolderTest {
   protected:
     std::map<std::string, double> errors() const {
         std::map<std::string, double> errors;
@@ -151,13 +150,13 @@ TEST_F(Recorded, APngIsComparedAsItIsStored) {
 TEST_F(Recorded, WhatCannotBeComparedIsAnError) {
     recorder.image("result", image::ImageF(16, 16, 3), {});
     recorder.image("truth", image::ImageF(32, 16, 3), {.truthOf = "result"});
-    EXPECT_EQ(test::errorText([&] { recorder.compareWithTruths(); }),
+    EXPECT_EQ(errorText([&] { recorder.compareWithTruths(); }),
               "image 'result' and its truth: the images differ in shape: 32x16 with 3 channels and "
               "16x16 with 3 channels");
-    EXPECT_EQ(test::errorText(
-                  [&] { recorder.image("truth", image::ImageF(4, 4, 3), {.truthOf = "other"}); }),
-              "image 'truth' is the truth of 'other', of which technique 'clustered_reflections' "
-              "does not declare that it has one");
+    EXPECT_EQ(
+        errorText([&] { recorder.image("truth", image::ImageF(4, 4, 3), {.truthOf = "other"}); }),
+        "image 'truth' is the truth of 'other', of which technique 'clustered_reflections' "
+        "does not declare that it has one");
 }
 
 TEST_F(Recorded, KeepsLayersTruthsAndAttributes) {
@@ -191,7 +190,7 @@ TEST_F(Recorded, GreyMayHaveAlpha) {
     ASSERT_EQ(png.channels(), 2);
     EXPECT_EQ(png.at(0, 0, 0), 188);
     EXPECT_EQ(png.at(0, 0, 1), 128);
-    EXPECT_EQ(test::errorText([&] { recorder.image("five", image::ImageF(1, 1, 5), {}); }),
+    EXPECT_EQ(errorText([&] { recorder.image("five", image::ImageF(1, 1, 5), {}); }),
               "image 'five' has 5 channels; 1 to 4 are allowed");
 }
 
@@ -201,12 +200,12 @@ TEST_F(Recorded, TruthsNeedTheirImage) {
     recorder.compareWithTruths();
     recorder.setIteration(1, 0);
     recorder.image("truth", image::ImageF(1, 1, 1), {.truthOf = "result"});
-    EXPECT_EQ(test::errorText([&] { recorder.compareWithTruths(); }),
+    EXPECT_EQ(errorText([&] { recorder.compareWithTruths(); }),
               "image 'truth' is the truth of 'result', which is not among the frame's images");
 }
 
 TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     CaseResult result;
     Case item = someCase();
     item.technique = "dots";
@@ -217,7 +216,7 @@ TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
     recorder.metric("voxels", 8, "image_12");
     recorder.share("useful_pct", 1, 4, "sample", "");
     const auto refused = [&](const char* metric, const char* unit, const char* pass) {
-        return test::errorText([&] { recorder.metric(metric, 1, pass, unit); });
+        return errorText([&] { recorder.metric(metric, 1, pass, unit); });
     };
     EXPECT_EQ(refused("voxel", "voxel", ""),
               "technique 'dots' has no metric 'voxel'; did you mean 'voxels'?");

@@ -1,15 +1,11 @@
 #include "runner/run/rounds.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
+#include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
 
 namespace gfxrepro::test {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
 using Lane = config::Measure::Lane;
 using TimePoint = run::Rounds::TimePoint;
 

@@ -2,7 +2,6 @@
 #include "runner/run/run_directory.h"
 
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -16,10 +15,6 @@
 
 namespace gfxrepro::test {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::EndsWith;
-using testing::StartsWith;
 
 TEST(RunDirectory, ALockOfOneThatIsGoingIsWaitedFor) {
     const TemporaryFolder folder;

@@ -1,17 +1,14 @@
 #include "runner/run/run.h"
 
-#include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/support.h"
 #include "tests/unit/run/plan_fixture.h"
 
 namespace gfxrepro::test {
 namespace {
 
 using run::Json;
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::Pair;
 
 constexpr const char* kA = "p/1 a 1";     // a case of the first table,
 constexpr const char* kTwin = "p/2 a 1";  // its twin in the second,

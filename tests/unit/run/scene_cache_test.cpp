@@ -1,7 +1,5 @@
 #include "runner/run/scene_cache.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -24,7 +22,7 @@ scene::Scene terrain(Params&, std::uint64_t) {
 
 TEST(SceneCache, CountsHeightsInMemory) {
     constexpr scene::GeneratorInfo kGenerators[] = {{"terrain", "", terrain}};
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     folder.write("m/x.yaml", "scene: m/x\ndoc: an x\nsources: [{generator: terrain, seed: 1}]\n");
     const scene::Catalog catalog(folder.path(), folder.path(), kGenerators);
     constexpr std::size_t kMapBytes = kHeights * sizeof(float);
@@ -80,17 +78,17 @@ class KeptScenes : public ::testing::Test {
         const scene::Catalog catalog(folder.path() / "s", folder.path(), kGenerators);
         return SceneCache(catalog, 0, kMostBytes).get(reference).scene;
     }
-    std::vector<std::filesystem::path> files() const {
-        std::vector<std::filesystem::path> all;
+    std::vector<fs::path> files() const {
+        std::vector<fs::path> all;
         const auto kept = folder.path() / "gfxrepro" / "scenes";
-        if (!std::filesystem::exists(kept)) return all;
-        for (const auto& file : std::filesystem::directory_iterator(kept)) all.push_back(file);
+        if (!fs::exists(kept)) return all;
+        for (const auto& file : fs::directory_iterator(kept)) all.push_back(file);
         return all;
     }
 
     static constexpr std::uintmax_t kMostBytes = 3'000'000;  // two of 1.2 MB
     static constexpr scene::GeneratorInfo kGenerators[] = {{"furnished", "", furnished}};
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
 };
 
 TEST_F(KeptScenes, AreWhatWasMade) {

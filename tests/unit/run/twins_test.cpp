@@ -1,8 +1,6 @@
 // Which cases are measured once, and what the others get.
 #include "runner/run/twins.h"
 
-#include <gmock/gmock.h>
-
 #include <functional>
 
 #include "engine/core/files.h"
@@ -16,12 +14,8 @@
 namespace gfxrepro::test {
 namespace {
 
-namespace fs = std::filesystem;
 using config::Case;
 using Lane = config::Measure::Lane;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::Pair;
 
 TEST(Twins, AreOfOneWorkWhateverTheyAreCalled) {
     const Case item = makeCase("t/1", "a", 64);

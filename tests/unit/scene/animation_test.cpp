@@ -1,7 +1,5 @@
 #include "engine/scene/animation.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -106,7 +104,7 @@ TEST(CameraAt, OneKeyStandsStill) {
 }
 
 TEST(CameraAt, APathWithoutKeysIsAnError) {
-    EXPECT_EQ(test::errorText([] {
+    EXPECT_EQ(errorText([] {
                   cameraAt(CameraPath{"empty", {}}, 0.5);
               }),
               "the camera path 'empty' has no keys");

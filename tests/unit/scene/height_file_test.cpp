@@ -1,8 +1,6 @@
 // Heights in a file: the same as in memory, made once, remade where damaged, never too many.
 #include "engine/scene/height_file.h"
 
-#include <gtest/gtest.h>
-
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -14,8 +12,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-namespace fs = std::filesystem;
 
 float heightAt(int column, int row) {
     return std::sin(0.1F * static_cast<float>(column)) * static_cast<float>(row % 50);
@@ -36,7 +32,7 @@ std::shared_ptr<const HeightFile> opened(const fs::path& folder, const std::stri
 }
 
 TEST(HeightFile, HasEverySampleAtEveryLevel) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     std::atomic<int> rows = 0;
     const auto file = opened(folder.path(), "a", rows);
     EXPECT_EQ(rows, 130);
@@ -66,7 +62,7 @@ TEST(HeightFile, HasEverySampleAtEveryLevel) {
 }
 
 TEST(HeightFile, IsMadeOnceAndAgainWhereItIsDamaged) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     std::atomic<int> rows = 0;
     opened(folder.path(), "a", rows);
     opened(folder.path(), "a", rows);
@@ -86,7 +82,7 @@ TEST(HeightFile, IsMadeOnceAndAgainWhereItIsDamaged) {
 }
 
 TEST(HeightFile, TheFileOpenedLongestAgoGoes) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     std::atomic<int> rows = 0;
     const auto first = opened(folder.path(), "a", rows);
     const std::uintmax_t bytes = fs::file_size(folder.path() / "a.heights");
@@ -107,7 +103,7 @@ TEST(HeightFile, TheFileOpenedLongestAgoGoes) {
 }
 
 TEST(HeightFile, ResamplesAsInMemoryAndStaysThereWithoutAFolder) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     FractalTerrain shape;
     shape.sizeSamples = 33;
     const HeightMap coarse = fractalTerrain(shape, 5);
@@ -125,8 +121,7 @@ TEST(HeightFile, ResamplesAsInMemoryAndStaysThereWithoutAFolder) {
     EXPECT_EQ(kept.file, nullptr);
     EXPECT_EQ(kept.heightsM, expected.heightsM);
     EXPECT_EQ(
-        test::errorText(
-            [&] { resampledInFile(coarse, 32769, 0.0F, 3, folder.path() / "file", "key"); }),
+        errorText([&] { resampledInFile(coarse, 32769, 0.0F, 3, folder.path() / "file", "key"); }),
         "a resampled height map: 32769 x 32769 samples have no file: cannot create " +
             (folder.path() / "file").string() +
             ": Not a directory; allowed without one, in memory: at most 16385 a side (1 GiB)");

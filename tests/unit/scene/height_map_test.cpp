@@ -1,7 +1,6 @@
 #include "engine/scene/height_map.h"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +17,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string messageOf(const fs::path& path) {
     try {
@@ -63,7 +60,7 @@ void writeTiff(const fs::path& path, const void* values, int bits, int format,
 }
 
 TEST(HeightMap, ReadsPngOf16And8Bits) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     image::Image16 deep(3, 2, 1);
     for (int i = 0; i < 6; ++i) deep.values()[i] = static_cast<std::uint16_t>(10000 * i);
     image::writePng(folder.path() / "deep.PNG", deep);
@@ -83,7 +80,7 @@ TEST(HeightMap, ReadsPngOf16And8Bits) {
 }
 
 TEST(HeightMap, ReadsTiffsAndTheirNoData) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.tif";
     const std::uint16_t u16[] = {1, 2, 65535, 4, 5, 6};
     writeTiff(path, u16, 16, SAMPLEFORMAT_UINT);
@@ -109,7 +106,7 @@ TEST(HeightMap, ReadsTiffsAndTheirNoData) {
 }
 
 TEST(HeightMap, ReadsWiderSamplesOfTiffs) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.tif";
     const std::int32_t i32[] = {-5, 16777216, 8848860, -2147483647, 4, -32768};
     writeTiff(path, i32, 32, SAMPLEFORMAT_INT, "-2147483647");
@@ -147,7 +144,7 @@ TEST(HeightMap, ReadsWiderSamplesOfTiffs) {
 }
 
 TEST(HeightMap, NoDataOfFewDigitsIsThatOfTheSamples) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.tif";
     const auto filled = [&](float sample, const char* noData) {
         const float values[] = {1.0F, 2.0F, sample, 3.0F, 4.0F, 5.0F};
@@ -165,7 +162,7 @@ TEST(HeightMap, NoDataOfFewDigitsIsThatOfTheSamples) {
 }
 
 TEST(HeightMap, ReadsSrtmTiles) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     std::vector<int> values(1201 * 1201, 300);
     values[1] = -5;
     values[1201 * 600 + 600] = -32768;
@@ -183,7 +180,7 @@ TEST(HeightMap, ReadsSrtmTiles) {
 }
 
 TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.raw";
     writeFileAtomic(path, bigEndian({-1, 2, 3, 4, 77, 6}));
     EXPECT_EQ(messageOf(path), path.string() + ": a raw height map needs " + path.string() +
@@ -217,7 +214,7 @@ void setBigEndian(std::string& bytes, std::size_t at, std::uint32_t value) {
 }
 
 TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.png";
     image::Image16 noise(17, 9, 1);
     for (std::size_t i = 0; i < noise.values().size(); ++i) {
@@ -257,7 +254,7 @@ TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
 }
 
 TEST(HeightMap, RefusesTiffsOfHugeHeaders) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.tif";
     const std::uint16_t values[] = {1, 2, 3, 4, 5, 6};
     writeTiff(path, values, 16, SAMPLEFORMAT_UINT);
@@ -275,7 +272,7 @@ TEST(HeightMap, RefusesTiffsOfHugeHeaders) {
 }
 
 TEST(HeightMap, RefusesFilesOfOneSampleASide) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path png = folder.path() / "a.png", tiff = folder.path() / "a.tif";
     for (const glm::ivec2 size : {glm::ivec2(1, 1), {1, 7}, {7, 1}}) {
         const auto values = std::vector<std::uint16_t>(static_cast<std::size_t>(size.x * size.y));
@@ -294,7 +291,7 @@ TEST(HeightMap, RefusesFilesOfOneSampleASide) {
 }
 
 TEST(HeightMap, NonSquareFilesAreServed) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.png";
     for (const glm::ivec2 size : {glm::ivec2(2, 2), {2, 7}, {9, 2}}) {
         image::Image16 image(size.x, size.y, 1);
@@ -309,7 +306,7 @@ TEST(HeightMap, NonSquareFilesAreServed) {
 }
 
 TEST(HeightMap, RefusesOtherFiles) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     EXPECT_EQ(messageOf("a.asc"),
               "a.asc: unknown kind of height map; allowed: .png .tif .tiff .hgt .raw .r16 .bin");
     const fs::path path = folder.path() / "rgb.png";

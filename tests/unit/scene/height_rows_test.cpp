@@ -1,7 +1,6 @@
 // Maps from files into files: the heights of those in memory, holes filled by bands, bounds.
 #include "engine/scene/height_rows.h"
 
-#include <gtest/gtest.h>
 #include <png.h>
 #include <tiffio.h>
 
@@ -19,9 +18,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-namespace fs = std::filesystem;
-using test::errorText;
 
 /// A hole in five, and a region of holes wider than a band.
 std::vector<float> withHoles(glm::ivec2 size) {
@@ -151,7 +147,7 @@ void writePng(const fs::path& path, const std::vector<std::int16_t>& values, int
     std::fclose(file);
 }
 
-using HeightRows = test::FolderTest;
+using HeightRows = FolderTest;
 
 TEST_F(HeightRows, MapsInFilesAreThoseInMemory) {
     const std::vector<std::int16_t> all = values();

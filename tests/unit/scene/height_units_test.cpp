@@ -1,6 +1,5 @@
 // What files say of their heights' units.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 #include <png.h>
 #include <tiffio.h>
 
@@ -13,9 +12,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-namespace fs = std::filesystem;
-using test::TemporaryFolder;
 
 /// 2 x 2 values 0, 10, 20, 30 with tags of GDAL and GeoTIFF.
 fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<double> scale,
@@ -55,7 +51,7 @@ fs::path writeGeoTiff(const fs::path& path, const char* metadata, std::vector<do
     return path;
 }
 
-using HeightUnits = test::FolderTest;
+using HeightUnits = FolderTest;
 
 TEST_F(HeightUnits, ScaleAndOffsetOfAGeoTiffAreApplied) {
     const fs::path path =
@@ -90,7 +86,7 @@ TEST_F(HeightUnits, ItemsOfMetadataAreReadAsXml) {
     EXPECT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item>"), 30.0F);
     EXPECT_EQ(highest("<Item name=\"role\" unrole=\"scale\">0.5</Item>"), 30.0F);
     const auto error = [&](const char* item) {
-        return test::errorText([&] { highest(item); }, folder.path());
+        return errorText([&] { highest(item); }, folder.path());
     };
     EXPECT_EQ(error("<Item role=\"scale\">0,1</Item>"),
               "DIR/a.tif: its scale is '0,1'; allowed: a number");
@@ -107,7 +103,7 @@ TEST_F(HeightUnits, NoDataIsAWholeNumber) {
     EXPECT_EQ(filled("10"), 1U);
     EXPECT_EQ(filled(" 2e1 "), 1U);
     EXPECT_EQ(filled("nan"), 0U);
-    EXPECT_EQ(test::errorText([&] { filled("10,5"); }, folder.path()),
+    EXPECT_EQ(errorText([&] { filled("10,5"); }, folder.path()),
               "DIR/a.tif: its GDAL_NODATA is '10,5'; allowed: a number");
 }
 
@@ -174,7 +170,7 @@ TEST_F(HeightUnits, ZOfTheModelIsApplied) {
     EXPECT_EQ(corners({30, 30, 1}, {0, 0, 0, 7, 8, 0}, {}, metadata), Pair(100, 115));
     const auto error = [&](std::vector<double> scale, std::vector<double> tiepoint,
                            std::vector<double> transform, const char* text = nullptr) {
-        return test::errorText([&] { corners(scale, tiepoint, transform, text); }, folder.path());
+        return errorText([&] { corners(scale, tiepoint, transform, text); }, folder.path());
     };
     EXPECT_EQ(error({30, 30, 0}, {0, 0, 0, 7, 8, 100}, {}),
               "DIR/a.tif: z begins at 100, where its scale is 0; allowed: another scale, or 0");
@@ -228,14 +224,14 @@ TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
     EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9036}), 500.0F);
     EXPECT_FLOAT_EQ(spacing({1, 1, 0, 1, 3076, 0, 1, 9003}), 600.0F / 3937.0F);
     EXPECT_FLOAT_EQ(spacing({1, 1, 0, 2, 3076, 0, 1, 32767, 3077, 34736, 1, 1}, {7, 0.25}), 0.125F);
-    EXPECT_EQ(test::errorText(
+    EXPECT_EQ(errorText(
                   [&] {
                       spacing({1, 1, 0, 1, 3076, 0, 1, 9014});
                   },
                   folder.path()),
               "DIR/a.tif: the linear unit is 9014; allowed: 9001 (metre), 9002 (foot), 9003 (US "
               "survey foot), 9036 (kilometre)");
-    EXPECT_EQ(test::errorText(
+    EXPECT_EQ(errorText(
                   [&] {
                       spacing({1, 1, 0, 2, 1024, 0, 1, 2, 2054, 0, 1, 9101});
                   },
@@ -252,7 +248,7 @@ TEST_F(HeightUnits, SamplesThatStandAskewAreRefused) {
     const auto error = [&](std::vector<double> scale, std::vector<double> transform,
                            std::vector<std::uint16_t> keys = {}) {
         writeGeoTiff(path, nullptr, std::move(scale), std::move(keys), std::move(transform));
-        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+        return errorText([&] { loadHeightMap(path, {}); }, folder.path());
     };
     EXPECT_EQ(error({}, {30, 0, 0, 0, 0, -10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), "no error");
     EXPECT_EQ(loadHeightMap(path, {}).spacingM, glm::vec2(30.0F, 10.0F));
@@ -303,7 +299,7 @@ TEST_F(HeightUnits, OtherPagesRowsAndBitsAreRefused) {
             TIFFWriteDirectory(tiff);
         }
         TIFFClose(tiff);
-        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+        return errorText([&] { loadHeightMap(path, {}); }, folder.path());
     };
     EXPECT_EQ(error(2, FILETYPE_REDUCEDIMAGE, 1), "no error");
     EXPECT_EQ(error(2, 0, 1), "DIR/a.tif: has 2 pages; one is allowed");
@@ -379,7 +375,7 @@ TEST_F(HeightUnits, DegreesFromWestToEastAreShorterInTheNorth) {
               "its coordinates, of latitude and longitude, do not say how far north it lies: its "
               "samples are drawn 61.7405 x 30.8703 m apart, as at the equator");
     const auto latitudeError = [&](double north) {
-        return test::errorText([&] { load({1, 1, 0}, {0, 0, 0, 7, north, 0}); }, folder.path());
+        return errorText([&] { load({1, 1, 0}, {0, 0, 0, 7, north, 0}); }, folder.path());
     };
     EXPECT_EQ(latitudeError(90.5), "no error");
     EXPECT_EQ(latitudeError(91),
@@ -437,9 +433,9 @@ TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
     for (const char* foot : {"US survey foot", "US Survey Foot", "ftUS", "US-ft"}) {
         EXPECT_FLOAT_EQ(unit(foot), 36000.0F / 3937.0F) << foot;
     }
-    EXPECT_EQ(test::errorText([&] { unit("Fathom"); }, folder.path()),
+    EXPECT_EQ(errorText([&] { unit("Fathom"); }, folder.path()),
               "DIR/a.tif: its heights are in 'Fathom'; allowed: m, ft, us-ft");
-    EXPECT_EQ(test::errorText(
+    EXPECT_EQ(errorText(
                   [&] {
                       highest(nullptr, {1, 1, 0, 1, 4099, 0, 1, 9014});
                   },
@@ -523,7 +519,7 @@ TEST_F(HeightUnits, APngThatIsTurnedIsNone) {
             png_set_eXIf_1(png, info, static_cast<png_uint_32>(exif.size()),
                            reinterpret_cast<png_bytep>(exif.data()));
         });
-        return test::errorText([&] { loadHeightMap(path, {}); }, folder.path());
+        return errorText([&] { loadHeightMap(path, {}); }, folder.path());
     };
     EXPECT_EQ(turned(1), "no error");
     EXPECT_EQ(turned(6), "DIR/a.png: turned by its Exif; allowed: as stored");

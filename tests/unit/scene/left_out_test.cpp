@@ -1,8 +1,6 @@
 // Files with all that their formats have: what is not used is said, once for each kind.
 #include "engine/scene/left_out.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 
@@ -13,7 +11,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::TemporaryFolder;
 using Lines = std::vector<std::string>;
 
 TEST(LeftOut, CountsEachKindAndStopsAtTooManyKinds) {

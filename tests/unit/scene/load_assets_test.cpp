@@ -1,6 +1,5 @@
 // Real models: what other programs counted in them, less the vertices that no triangle uses (1,113
 // of the bunny, 2 of the small dragon).
-#include <gtest/gtest.h>
 
 #include <algorithm>
 

@@ -1,6 +1,5 @@
 // Clouds of points as scanners' programs write them: XYZ in text, and LAS.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cstdint>
 #include <cstring>
@@ -17,8 +16,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
 using Lines = std::vector<std::string>;
 using Points = std::vector<glm::vec3>;
 

@@ -1,7 +1,5 @@
 // Coordinates far from the origin, as surveys have them.
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
@@ -16,8 +14,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-using test::TemporaryFolder;
 
 /// 400 points 2 cm apart, at 500 000, 4 500 000.
 std::string points(const char* type) {
@@ -37,7 +33,7 @@ std::size_t differentPoints(const std::vector<glm::vec3>& positions) {
     return different.size();
 }
 
-using FarFiles = test::FolderTest;
+using FarFiles = FolderTest;
 
 TEST_F(FarFiles, PointsKeepTheirPlaces) {
     for (const char* type : {"double", "float"}) {  // text has the digits, whatever it declares
@@ -47,8 +43,7 @@ TEST_F(FarFiles, PointsKeepTheirPlaces) {
         const glm::dvec3 first = glm::dvec3(scene.points.positions[0]) + scene.offset;
         EXPECT_LT(glm::length(first - glm::dvec3(500'000, 4'500'000, 10)), 1e-6);
         ASSERT_EQ(scene.warnings.size(), 1U);
-        EXPECT_THAT(scene.warnings[0],
-                    testing::StartsWith("its coordinates lie far from the origin: ("));
+        EXPECT_THAT(scene.warnings[0], StartsWith("its coordinates lie far from the origin: ("));
     }
 }
 

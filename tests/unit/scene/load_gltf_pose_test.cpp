@@ -1,5 +1,4 @@
 // Skins, morph targets, shared accessors: where a glTF file's vertices stand.
-#include <gtest/gtest.h>
 
 #include <string>
 
@@ -9,9 +8,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 /// The square, and behind it numbers of a test's own: accessor 4 on, of floats.
 class PoseGltf : public testing::Test {
@@ -30,7 +26,7 @@ class PoseGltf : public testing::Test {
                                           std::to_string(count) + ",\"type\":\"" + type + "\"}");
         return accessors_++;
     }
-    std::filesystem::path write() {
+    fs::path write() {
         folder_.write("square.bin", bytes_);
         document_["buffers"] =
             R"([{"uri":"square.bin","byteLength":)" + std::to_string(bytes_.size()) + "}]";

@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
@@ -11,9 +9,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 class LoadGltf : public testing::Test {
   protected:
@@ -235,7 +230,7 @@ TEST_F(LoadGltf, SaysThatATextureHasNoCoordinates) {
         R"([{"uri":"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="}])";
     document["textures"] = R"([{"source":0}])";
     EXPECT_THAT(load(document).warnings,
-                testing::Contains("left out: a texture of a mesh without TEXCOORD_0"));
+                Contains("left out: a texture of a mesh without TEXCOORD_0"));
 }
 
 TEST_F(LoadGltf, SaysWhatItsSceneDoesNotHave) {

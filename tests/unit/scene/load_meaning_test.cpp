@@ -1,7 +1,6 @@
 // Values that a format does not have, that stand twice, or where others are expected: refused or
 // said, never passed over.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
@@ -16,8 +15,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
 using Lines = std::vector<std::string>;
 
 class LoadMeaning : public testing::Test {
@@ -268,7 +265,7 @@ TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
     EXPECT_EQ(scene.warnings, std::vector<std::string>{});
     EXPECT_EQ(scene.materials.at(0).name, "\u00FC");
     EXPECT_EQ(scene.materials.at(0).baseColorTexture, 0);
-    std::vector<std::filesystem::path> opened = scene.filesBeside;
+    std::vector<fs::path> opened = scene.filesBeside;
     std::ranges::sort(opened);
     EXPECT_EQ(opened, filesBeside(path));
     // That of its own bytes goes first.

@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <string>
 
@@ -11,9 +9,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 class LoadObj : public testing::Test {
   protected:
@@ -292,8 +287,8 @@ TEST_F(LoadObj, SplitsByMaterial) {
     EXPECT_EQ(scene.textures.at(0), image::Image8(2, 1, 3, 128));
     EXPECT_NEAR(scene.materials.at(1).baseColor.a, 0.1F, 1e-6F);
     EXPECT_EQ(scene.materials.at(1).baseColorTexture, -1);
-    EXPECT_THAT(scene.warnings, testing::Contains("left out: a material's opacity below 1, drawn "
-                                                  "as solid (2 times)"));
+    EXPECT_THAT(scene.warnings, Contains("left out: a material's opacity below 1, drawn "
+                                         "as solid (2 times)"));
 }
 
 TEST_F(LoadObj, LivesWithoutItsMaterialFile) {
@@ -345,7 +340,7 @@ TEST_F(LoadObj, NamesThatTakeTheNextLineAreSaid) {
          {"g C:\\part\\", "o part\\ ", "g part\\\r", "g part \\", "s off\\", "lod a\\"}) {
         const Scene scene = load(kSquare + line + "\nf 1 2 3\nf 1 3 4\n");
         EXPECT_EQ(scene.triangleCount(), 1U) << line;
-        EXPECT_THAT(scene.warnings, testing::Contains(said)) << line;
+        EXPECT_THAT(scene.warnings, Contains(said)) << line;
     }
     EXPECT_EQ(
         load(head + "usemtl b\\\nf 1 2 3\ng c\\\nf 1 2 3\nusemtl a\nf 1 2 3\nf 1 3 4\n").warnings,
@@ -382,7 +377,7 @@ TEST_F(LoadObj, SaysWhereItIsWrong) {
 TEST_F(LoadObj, AFileOfZerosHasItsErrorSoonAndInALine) {
     const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
         const auto path = folder_.write("a.obj", head);
-        std::filesystem::resize_file(path, bytes);  // nearly all of it a hole
+        fs::resize_file(path, bytes);  // nearly all of it a hole
         return errorText([&] { loadObj(path); }, folder_.path());
     };
     EXPECT_EQ(errorOf(kSquare + "usemtl ", 100'000'000),
@@ -403,7 +398,7 @@ TEST_F(LoadObj, RefusesBrokenMaterialFilesAndTextures) {
     EXPECT_EQ(error(content), "DIR/a.mtl:2: 'red' is not a finite number");
     folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
     folder_.write("a.png", "\x89PNG, but broken");
-    EXPECT_THAT(error(content), testing::StartsWith("DIR/a.png: "));
+    EXPECT_THAT(error(content), StartsWith("DIR/a.png: "));
 }
 
 }  // namespace

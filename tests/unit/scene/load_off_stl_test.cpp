@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstring>
@@ -13,8 +12,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
 using namespace std::string_literals;
 using Lines = std::vector<std::string>;
 

@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <cstring>
 #include <limits>
@@ -9,9 +8,6 @@
 
 namespace gfxrepro::scene {
 namespace {
-
-using test::errorText;
-using test::TemporaryFolder;
 
 class LoadPly : public testing::Test {
   protected:
@@ -287,7 +283,7 @@ TEST_F(LoadPly, AHeaderOfManyElementsIsReadAtOnce) {
 TEST_F(LoadPly, AFileOfZerosHasItsErrorSoonAndInALine) {
     const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
         const auto path = folder_.write("a.ply", head);
-        std::filesystem::resize_file(path, bytes);  // nearly all of it a hole
+        fs::resize_file(path, bytes);  // nearly all of it a hole
         return errorText([&] { loadPly(path); }, folder_.path());
     };
     EXPECT_EQ(errorOf("ply\nformat ascii 1.0\ncomment ", 100'000'000),

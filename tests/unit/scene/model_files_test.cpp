@@ -1,8 +1,6 @@
 // Which files belong to a model, and its textures.
 #include "engine/scene/model_files.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -17,10 +15,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
-
-using ModelFiles = test::FolderTest;
+using ModelFiles = FolderTest;
 
 TEST_F(ModelFiles, AFileWithAnEncodedNameIsPartOfTheIdentity) {
     Document document = square();
@@ -28,9 +23,9 @@ TEST_F(ModelFiles, AFileWithAnEncodedNameIsPartOfTheIdentity) {
     document["buffers"] = R"([{"byteLength":76,"uri":"two%20words/a+b%20c.bin"}])";
     const auto path = folder.write("a.gltf", text(document));
     const auto bin = folder.path() / "two words/a+b c.bin";
-    EXPECT_EQ(filesBeside(path), std::vector<std::filesystem::path>{bin});
+    EXPECT_EQ(filesBeside(path), std::vector<fs::path>{bin});
     const Scene scene = loadScene(path);
-    EXPECT_EQ(scene.filesBeside, std::vector<std::filesystem::path>{bin});
+    EXPECT_EQ(scene.filesBeside, std::vector<fs::path>{bin});
     folder.write("two words/a+b c.bin", squareBytes().replace(0, 4, "\0\0\x80\x3e", 4));
     EXPECT_NE(loadScene(path).origin.sha256, scene.origin.sha256);
 }
@@ -64,7 +59,7 @@ TEST_F(ModelFiles, AnObjFileHasThoseThatItsLoaderOpens) {
                      "\xEF\xBB\xBFmtllib a.mtl\nmtllib \\\n \"c d.mtl\"\n# mtllib e.mtl\n"
                      "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     folder.write("e.mtl", "newmtl e\n");
-    std::vector<std::filesystem::path> opened = loadScene(path).filesBeside;
+    std::vector<fs::path> opened = loadScene(path).filesBeside;
     std::ranges::sort(opened);
     EXPECT_EQ(opened, filesBeside(path));
     EXPECT_EQ(opened.size(), 3U);
@@ -110,7 +105,7 @@ TEST_F(ModelFiles, CarriageReturnsEndLinesWhereNothingElseDoes) {
     const auto obj = written("a.obj",
                              "# a comment\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
                              "usemtl a\nf 1 2 3\n");
-    EXPECT_EQ(filesBeside(obj), std::vector<std::filesystem::path>{folder.path() / "a.mtl"});
+    EXPECT_EQ(filesBeside(obj), std::vector<fs::path>{folder.path() / "a.mtl"});
     EXPECT_EQ(loadScene(obj).materials.at(0).baseColor, glm::vec4(1, 0, 0, 1));
     EXPECT_EQ(error("b.obj", "v 0 0 0\nv x 0 0\n"), "DIR/b.obj:2: 'x' is not a finite number");
     const std::string ply =

@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
@@ -11,8 +10,6 @@
 namespace gfxrepro::scene {
 namespace {
 
-using test::errorText;
-using test::TemporaryFolder;
 using Lines = std::vector<std::string>;
 
 /// A mesh whose numbers use all their bits.
@@ -41,7 +38,7 @@ void expectSame(const Mesh& a, const Mesh& b) {
     EXPECT_EQ(a.triangles, b.triangles);
 }
 
-using SavePly = test::FolderTest;
+using SavePly = FolderTest;
 
 TEST_F(SavePly, ComesBackExactly) {
     const Mesh mesh = randomMesh(1);
@@ -97,7 +94,7 @@ Material unusualMaterial() {
     return material;
 }
 
-using SaveGlb = test::FolderTest;
+using SaveGlb = FolderTest;
 
 TEST_F(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     Scene scene;

@@ -1,14 +1,9 @@
 #include "engine/scene/scene_reference.h"
 
-#include <gmock/gmock.h>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
 namespace {
-
-using testing::ElementsAre;
-using testing::Pair;
 
 Node reference(const std::string& text) {
     return Node::scalar(text, SourceLocation{"t.yaml", 5, 8});
@@ -49,7 +44,7 @@ TEST(SceneReference, TakesSeedAndParameters) {
 
 TEST(SceneReference, RefusesWhatIsNoParameter) {
     const auto errorOf = [](const std::string& text) {
-        return test::errorText([&] { SceneReference::from(reference(text)); });
+        return errorText([&] { SceneReference::from(reference(text)); });
     };
     EXPECT_EQ(errorOf("a?blades"),
               "t.yaml:5:8: scene 'a?blades': 'blades' is no parameter; allowed: "
@@ -61,7 +56,7 @@ TEST(SceneReference, RefusesWhatIsNoParameter) {
               "t.yaml:5:8: scene 'a?n=[1, 2]': 'n=[1, 2]' is no parameter; allowed: "
               "SCENE?NAME=VALUE&NAME=VALUE@SEED");
     EXPECT_EQ(
-        test::errorText([] { withSceneParams(reference("a"), parseYaml("n: [1, 2]", "p.yaml")); }),
+        errorText([] { withSceneParams(reference("a"), parseYaml("n: [1, 2]", "p.yaml")); }),
         "p.yaml:1:4: scene parameter 'n' is [1, 2]; allowed: a number, true, false or a name");
 }
 

@@ -1,7 +1,5 @@
 #include "runner/studies/sensitivity.h"
 
-#include <gmock/gmock.h>
-
 #include "engine/core/node.h"
 #include "scenes/registry.h"
 #include "tests/support/support.h"
@@ -11,8 +9,6 @@ namespace {
 
 using claims::ClaimResult;
 using claims::Verdict;
-using testing::ElementsAre;
-using testing::Pair;
 
 Node node(const std::string& yaml) {
     return parseYaml(yaml, "t.yaml");
@@ -39,7 +35,7 @@ config::Case caseWith(const std::string& params, const std::string& axes = "{}")
 
 /// Two generated scenes and one of a file.
 struct Scenes {
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
 
     Scenes() {
         for (const char* name : {"city", "tree"}) {
@@ -61,7 +57,7 @@ std::vector<std::string> titles(const Variations& variations) {
     return all;
 }
 
-using Sensitivity = test::FolderTest;
+using Sensitivity = FolderTest;
 
 TEST_F(Sensitivity, VariesWhatIsBoundByTurns) {
     config::Experiment experiment;
@@ -212,7 +208,7 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
           "| C | a \\< b | holds | kind (1 of 2 tried) | holds unless kind is b |\n",
           "| kind = b | fails:  |\n", "| bias = 5 | exit code 2: bias is 5 |\n",
           "- view: it has no range\n"}) {
-        EXPECT_THAT(text, testing::HasSubstr(line)) << line << '\n';
+        EXPECT_THAT(text, HasSubstr(line)) << line << '\n';
     }
 
     const auto file = folder.write("p-1.csv", csv);
@@ -222,7 +218,7 @@ TEST_F(Sensitivity, WritesTablesAndReadsThemAgain) {
     EXPECT_EQ(restsOn(read, 0), "kind (1 of 2 tried)");
     EXPECT_TRUE(readSensitivity(file, "p/1", "of another config").empty());
     folder.write("p-1.csv", csv + "p/1,abc,kind,c,C,perhaps,,,,\n");
-    EXPECT_EQ(test::errorText([&] { readSensitivity(file, "p/1", "abc"); }, folder.path()),
+    EXPECT_EQ(errorText([&] { readSensitivity(file, "p/1", "abc"); }, folder.path()),
               "DIR/p-1.csv:5: 'perhaps' is no verdict (holds, fails, ambiguous, not-applicable, "
               "unmeasured)");
 }

@@ -1,7 +1,6 @@
 #include "runner/tables/calibration.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <cmath>
 
@@ -9,11 +8,6 @@
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// A grid of `spread` with one measured value a column; none where it is negative.
 Table tableOf(const std::vector<std::vector<double>>& rows) {
@@ -106,7 +100,7 @@ TEST(Fit, SaysNothingWithoutOne) {
 }
 
 TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const Table grid = tableOf({{60, 50}, {73, 46}});
     folder.write("nest.csv", fitCsv(fitOf(experimentOf(), grid), grid));
     folder.write("nest.md", "not read");
@@ -125,10 +119,10 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
 }
 
 TEST(Fit, RefusesKeptFilesOfAnotherKind) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto errorOf = [&](const std::string& text) {
         folder.write("nest.csv", text);
-        return test::errorText([&] { keptCalibrations(folder.path()); }, folder.path());
+        return errorText([&] { keptCalibrations(folder.path()); }, folder.path());
     };
     EXPECT_EQ(errorOf("spread,column\n1,a\n"),
               "DIR/nest.csv:1: is no fit, whose columns end in column, table, printed, measured, "

@@ -1,14 +1,9 @@
 #include "runner/tables/cell_format.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/support.h"
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::ElementsAre;
 
 TEST(CellFormat, WritesStatistics) {
     const CellFormat format("{mean:.2f}/{max:.0f} {{x}}", {});
@@ -28,7 +23,7 @@ TEST(CellFormat, ReadsWhatItWrites) {
 
 TEST(CellFormat, BadFormatsAreErrorsInTheirPlace) {
     const auto error = [](const std::string& text) {
-        return test::errorText([&] { CellFormat(text, {"a.yaml", 3, 7}); });
+        return errorText([&] { CellFormat(text, {"a.yaml", 3, 7}); });
     };
     EXPECT_EQ(
         error("{avg:.2f}"),
@@ -40,7 +35,7 @@ TEST(CellFormat, BadFormatsAreErrorsInTheirPlace) {
     EXPECT_EQ(error("12"),
               "a.yaml:3:7: format '12': expected a statistic in braces, as in '{median:.2f}'");
     EXPECT_THAT(error("{mean:.2q}"),
-                testing::StartsWith("a.yaml:3:7: format '{mean:.2q}': bad number format '.2q': "));
+                StartsWith("a.yaml:3:7: format '{mean:.2q}': bad number format '.2q': "));
 }
 
 }  // namespace

@@ -2,8 +2,6 @@
 #include "runner/tables/table.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <functional>
 
@@ -15,14 +13,10 @@ namespace gfxrepro::tables {
 namespace {
 
 using config::Better;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
 
 /// A sweep of one's own whose technique declares a digest, voxels and an error.
 config::Experiment sweepOf(const std::string& sweep) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file =
         folder.write("s.yaml", "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: " + sweep + "\n");
     config::Experiment experiment = config::loadExperiment(file, {}, folder.path());
@@ -110,12 +104,12 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
     EXPECT_THAT(notes(), Contains("One frame of each case is measured: the key frame interval, and "
                                   "whatever follows from frames before, needs several (`output: "
                                   "{frames: 20}`)."));
-    const auto saysSo = Contains(testing::StartsWith("One frame"));
+    const auto saysSo = Contains(StartsWith("One frame"));
     experiment.outputs.metrics.back().name = "digest";  // which is recorded
-    EXPECT_THAT(notes(), testing::Not(saysSo));
+    EXPECT_THAT(notes(), Not(saysSo));
     experiment.outputs.metrics.back().name = "key_frame_interval";
     experiment.measure.frames = 2;
-    EXPECT_THAT(notes(), testing::Not(saysSo));
+    EXPECT_THAT(notes(), Not(saysSo));
 }
 
 /// Frames of three methods over six processes: 10, 9 and 10 ms, of which the first wavers.
@@ -150,9 +144,9 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
     EXPECT_TRUE(table.rows[2].cells[1].isWithinNoise);
     // Numbers, scenes and what has no name are no rivals.
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{method: ['', fast]}"), ofMethods())),
-                testing::Not(Contains(testing::HasSubstr("÷"))));
+                Not(Contains(HasSubstr("÷"))));
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{resolution: [32, 64]}"), recordedAt({32, 64}))),
-                testing::Not(Contains(testing::HasSubstr("÷"))));
+                Not(Contains(HasSubstr("÷"))));
 }
 
 /// Methods with parameters of their own, each with an error that no measurement changes.
@@ -347,7 +341,7 @@ TEST(DefaultLayout, BuiltInMethodsAreHeldByCpuTimeWhereItWasRecorded) {
 
 /// A program that says a time of its own, and whose pictures have errors.
 config::Experiment programWith(const std::string& images) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file = folder.write(
         "s.yaml",
         "sweep_of: s\ntitle: Mine\nprogram:\n  command: t {samples}\n  params: {samples: 4}\n"

@@ -1,16 +1,12 @@
 #include "runner/tables/figure.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
 
+#include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::ElementsAre;
 
 /// Scenes a and b, sizes 0 to 4; `plots` are checked against it.
 config::Experiment sized(const std::string& plots, const std::string& printed = "") {

@@ -9,7 +9,7 @@
 namespace gfxrepro::tables {
 
 config::Experiment experimentFrom(const std::string& body) {
-    const test::TemporaryFolder folder;
+    const TemporaryFolder folder;
     const auto file = folder.write(
         "table-9.9.yaml", "table: zju2005/9.9\ntitle: A table\ntechnique: voxelization\n" + body);
     return config::loadExperiment(file, {}, folder.path());

@@ -1,17 +1,13 @@
 #include "runner/tables/frame_times.h"
 
-#include <gmock/gmock.h>
-
 #include <algorithm>
 #include <vector>
 
+#include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 FrameTimes timesOf(const RecordMaker& maker) {
     FrameTimes times;
@@ -46,7 +42,7 @@ TEST(FrameTimes, SumsTheFramesOfARound) {
     maker.process(1).frame(0).add("wall_time_ms", {11});  // a frame is missing
     maker.beginCase("b").add("wall_time_ms", {5}, "draw").add("gpu_time_ms", {4});
     const FrameTimes times = timesOf(maker);
-    EXPECT_THAT(times.times(Clock::Wall), ElementsAre(ElementsAre(testing::Pair(0, 32.0))));
+    EXPECT_THAT(times.times(Clock::Wall), ElementsAre(ElementsAre(Pair(0, 32.0))));
     EXPECT_EQ(times.roundCount(), 2U);
     EXPECT_TRUE(times.hasRounds(maker.records()[0].caseId, 2));
     EXPECT_FALSE(times.hasRounds(maker.records()[0].caseId, 3));
@@ -169,8 +165,8 @@ TEST(FrameTimes, ARowNamesTheOutlierOfAUsersOwnTable) {
         }
     }
     EXPECT_THAT(buildTable(experiment, maker.records()).notes,
-                testing::Contains("Outlier: frame 0 of light grid 8 took 60 ms in process 3, 6 "
-                                  "times its fellows."));
+                Contains("Outlier: frame 0 of light grid 8 took 60 ms in process 3, 6 "
+                         "times its fellows."));
 }
 
 TEST(FrameTimes, NotesSayWhatEndedTheRounds) {

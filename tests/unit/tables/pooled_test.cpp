@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "runner/tables/table.h"
 #include "tests/support/support.h"
@@ -8,11 +6,6 @@
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::Contains;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
 
 /// Two methods at two depths.
 Table tableWith(const std::string& layout) {
@@ -33,7 +26,7 @@ std::string refusalOf(const std::string& layout) {
     const config::Experiment experiment =
         experimentFrom("sweep: {method: [oct, snorm], bits: [8, 10]}\nlayout: " + layout + "\n");
     const std::string text =
-        test::errorText([&] { requireToldApart(experiment, buildTable(experiment, Recorded())); });
+        errorText([&] { requireToldApart(experiment, buildTable(experiment, Recorded())); });
     const std::size_t at = text.find(".yaml:");
     return at == std::string::npos ? text : text.substr(at + 6);
 }
@@ -84,21 +77,20 @@ TEST(Pooled, EachColumnsOwnValuesAreSaid) {
         notesOf("{columns: {old: {where: {method: [a, b]}}, new: {where: {method: [c, d]}}, "
                 "more: {metric: steps, where: {method: [a, b]}}, one: {where: "
                 "{method: a}}}, cell: {metric: error}}"),
-        testing::ElementsAre("Each number of columns old, more is taken over method "
-                             "(a, b).",
-                             "Each number of column new is taken over method (c, d)."));
-    EXPECT_THAT(
-        notesOf("{rows: {x: {where: {method: [a, b]}}, y: {where: {method: a}}}, columns: "
-                "{e: {metric: error}, most: {metric: error, where: {method: [c, d]}}}}"),
-        testing::ElementsAre("Each number of column e in row x is taken over method (a, b).",
-                             "Each number of column most is taken over method (c, d)."));
+        ElementsAre("Each number of columns old, more is taken over method "
+                    "(a, b).",
+                    "Each number of column new is taken over method (c, d)."));
+    EXPECT_THAT(notesOf("{rows: {x: {where: {method: [a, b]}}, y: {where: {method: a}}}, columns: "
+                        "{e: {metric: error}, most: {metric: error, where: {method: [c, d]}}}}"),
+                ElementsAre("Each number of column e in row x is taken over method (a, b).",
+                            "Each number of column most is taken over method (c, d)."));
     std::string columns;
     for (const char* pair : {"[a, b]", "[b, c]", "[c, d]", "[d, e]", "[e, f]"}) {
         columns += fmt::format("{}x{}: {{metric: error, where: {{method: {}}}}}",
                                columns.empty() ? "" : ", ", columns.size(), pair);
     }
     EXPECT_THAT(notesOf("{columns: {" + columns + "}}"),
-                testing::ElementsAre("Each number is taken over method (some of 6 values)."))
+                ElementsAre("Each number is taken over method (some of 6 values)."))
         << "too many to tell apart";
 }
 
@@ -133,7 +125,7 @@ TEST(Pooled, AColumnOfAnImportThatTheConfigDoesNotNameIsRefused) {
             experimentFrom("sweep: {method: [oct, snorm]}\n" + lines + "\n");
         experiment.technique = config::kImported;
         const Table table = tables::buildTable(experiment, records.cases, records);
-        const std::string text = test::errorText([&] { requireToldApart(experiment, table); });
+        const std::string text = errorText([&] { requireToldApart(experiment, table); });
         const std::size_t at = text.find(".yaml:");
         return at == std::string::npos ? text : text.substr(at + 6);
     };
@@ -195,7 +187,7 @@ TEST(Pooled, AxesThatGoTogetherAreNotTakenTogether) {
         "layout: {rows: bits, columns: {e: {metric: error}}}\n");
     const Table table = buildTable(experiment, Recorded());
     EXPECT_THAT(table.notes, Not(Contains(HasSubstr("taken over"))));
-    EXPECT_EQ(test::errorText([&] { requireToldApart(experiment, table); }), "no error");
+    EXPECT_EQ(errorText([&] { requireToldApart(experiment, table); }), "no error");
 }
 
 }  // namespace

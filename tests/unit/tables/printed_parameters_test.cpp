@@ -1,15 +1,10 @@
 #include "runner/tables/printed.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
+#include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
 namespace gfxrepro::tables {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 constexpr const char* kDuck = R"(
 scene: models/duck

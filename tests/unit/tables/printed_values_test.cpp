@@ -1,7 +1,5 @@
 #include "runner/tables/printed.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
@@ -20,7 +18,7 @@ std::string errorOf(const std::string& rows) {
     const config::Experiment paper = experimentFrom("sweep: {scene: [duck, dragon]}\n" + body);
     const std::vector<Table> tables = {buildTable(whole, Recorded()),
                                        buildTable(paper, Recorded())};
-    const std::string text = test::errorText([&] { requirePrintedValues(whole, tables); });
+    const std::string text = errorText([&] { requirePrintedValues(whole, tables); });
     const std::size_t at = text.find(".yaml:");
     return at == std::string::npos ? text : text.substr(at + 6);
 }

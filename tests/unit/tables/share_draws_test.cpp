@@ -1,8 +1,6 @@
 // Shares that were counted once: their intervals, and claims about them.
 #include "runner/tables/cell.h"
 
-#include <gtest/gtest.h>
-
 #include <random>
 
 #include "runner/claims/judge.h"

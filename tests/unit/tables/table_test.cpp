@@ -1,8 +1,6 @@
 #include "runner/tables/table.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,12 +12,6 @@
 
 namespace gfxrepro::tables {
 namespace {
-
-using test::errorText;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 std::vector<std::string> columnLabels(const Table& table) {
     std::vector<std::string> labels;
@@ -801,14 +793,14 @@ layout:
     load_ms: {metric: cpu_time_ms, pass: load, format: "{mean:.1f}"}
 )x"),
                                    maker.records());
-    EXPECT_THAT(table.notes,
-                testing::IsSupersetOf(
-                    {"In column most [ms] the max is taken in each process; a number and "
-                     "its bounds are of the median process.",
-                     "In column frame [ms] the mean is taken in each process; a number and "
-                     "its bounds are of the median process.",
-                     "In column load [ms] the mean is over processes, and has no interval: "
-                     "what is rare moves it by any amount. No claim is decided by it."}));
+    EXPECT_THAT(
+        table.notes,
+        IsSupersetOf({"In column most [ms] the max is taken in each process; a number and "
+                      "its bounds are of the median process.",
+                      "In column frame [ms] the mean is taken in each process; a number and "
+                      "its bounds are of the median process.",
+                      "In column load [ms] the mean is over processes, and has no interval: "
+                      "what is rare moves it by any amount. No claim is decided by it."}));
     EXPECT_EQ(std::ranges::count_if(
                   table.notes, [](const std::string& note) { return note.starts_with("In "); }),
               3);

@@ -1,8 +1,6 @@
 #include "engine/scene/catalog.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 
@@ -17,7 +15,7 @@ namespace {
 
 constexpr const char* kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-const std::filesystem::path kShippedScenes = GFXREPRO_SOURCE_DIR "/configs/scenes";
+const fs::path kShippedScenes = GFXREPRO_SOURCE_DIR "/configs/scenes";
 
 Node reference(const std::string& name) {
     return Node::scalar(name, {"table.yaml", 5, 8});
@@ -25,7 +23,7 @@ Node reference(const std::string& name) {
 
 /// configs with one entry m/x, and an assets folder beside it.
 struct Folders {
-    test::TemporaryFolder folder;
+    TemporaryFolder folder;
 
     Folders() {
         folder.write("assets/readme", "");
@@ -37,7 +35,7 @@ struct Folders {
     }
     std::string errorOf(const std::string& yaml) const {
         entry(yaml);
-        return test::errorText([&] { catalog(); }, folder.path());
+        return errorText([&] { catalog(); }, folder.path());
     }
 };
 
@@ -61,7 +59,7 @@ TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
     EXPECT_NE(catalog.contentKey(reference("m/x@5")), catalog.contentKey(reference("m/x")));
 
     const auto errorOf = [&](const std::string& name) {
-        return test::errorText([&] { catalog.resolve(reference(name)); });
+        return errorText([&] { catalog.resolve(reference(name)); });
     };
     EXPECT_EQ(
         errorOf("m/x@-1"),
@@ -76,7 +74,7 @@ TEST(Catalog, TakesAGeneratedSceneAtAnotherSeed) {
 
 TEST(Catalog, KeepsResampledHeightsByWhatTheyAreMadeOf) {
     const Folders folders;
-    const std::filesystem::path cache = folders.folder.path() / "cache";
+    const fs::path cache = folders.folder.path() / "cache";
     ASSERT_EQ(setenv("XDG_CACHE_HOME", cache.c_str(), 1), 0);
     const auto source = [&](int detailM) {
         folders.entry(
@@ -119,7 +117,7 @@ TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
               catalog.contentKey(reference("m/x")));
     EXPECT_NE(catalog.contentKey(reference("m/x?triangles=11000")),
               catalog.contentKey(reference("m/x")));
-    EXPECT_EQ(test::errorText([&] { catalog.resolve(reference("m/x?triangle=1")); }),
+    EXPECT_EQ(errorText([&] { catalog.resolve(reference("m/x?triangle=1")); }),
               "table.yaml:5:8: generator 'grass': unknown parameter 'triangle'; did you mean "
               "'triangles'?");
 }
@@ -146,7 +144,7 @@ TEST(Catalog, KnowsTheGeneratorsThatItIsGiven) {
     const Scene scene = open(kOwn).load(reference("m/x"));
     EXPECT_EQ(scene.bounds().max.x, 4.0F);
     EXPECT_EQ(scene.origin.description, "generator one_triangle, seed 1: {size_m: 4}");
-    EXPECT_EQ(test::errorText([&] { open({}); }, f.folder.path()),
+    EXPECT_EQ(errorText([&] { open({}); }, f.folder.path()),
               "DIR/scenes/m/x.yaml:5:17: unknown generator 'one_triangle' (there are: )");
 }
 
@@ -245,8 +243,8 @@ TEST(Catalog, AFileThatNoLoaderTakesIsNotReadThrough) {
                                       "property float x\nproperty float y\nproperty float z\n"
                                       "end_header\n"},
                                      {"g.obj", kTriangle}}) {
-        std::filesystem::resize_file(folders.folder.write("assets/" + std::string(huge), head),
-                                     20'000'000'000);  // of which the disk has the head alone
+        fs::resize_file(folders.folder.write("assets/" + std::string(huge), head),
+                        20'000'000'000);  // of which the disk has the head alone
     }
     const auto refusalOf = [&](const std::string& file) {
         return "DIR/assets/" + file +
@@ -256,13 +254,12 @@ TEST(Catalog, AFileThatNoLoaderTakesIsNotReadThrough) {
         folders.entry("scene: m/x\ndoc: d\nsources: [{file: " + std::string(model) + "}]\n");
         const Catalog catalog = folders.catalog();
         const std::string refusal = refusalOf(model[0] >= 'e' ? model : "huge.bin");
-        EXPECT_EQ(
-            test::errorText([&] { catalog.contentKey(reference("m/x")); }, folders.folder.path()),
-            refusal)
+        EXPECT_EQ(errorText([&] { catalog.contentKey(reference("m/x")); }, folders.folder.path()),
+                  refusal)
             << model;
         if (model[0] == 'a') continue;  // its loader looks at the first bytes of a texture
-        EXPECT_THAT(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
-                    testing::HasSubstr(refusal))
+        EXPECT_THAT(errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+                    HasSubstr(refusal))
             << model;
     }
 }
@@ -276,20 +273,20 @@ TEST(Catalog, AHeightMapHasNoMoreThanItsSamples) {
     folders.folder.write("assets/c.hgt", "");
     folders.folder.write("assets/d.tif", "II*");
     for (const char* name : {"a.png", "b.raw", "c.hgt", "d.tif"}) {
-        std::filesystem::resize_file(file(name), 20'000'000'000);  // nearly all of it a hole
+        fs::resize_file(file(name), 20'000'000'000);  // nearly all of it a hole
     }
     const auto expectRefused = [&](const std::string& source, const std::string& why) {
         folders.entry("scene: m/x\ndoc: d\nsources: [{spacing_m: 1, height_map: " + source +
                       "}]\n");
         const Catalog catalog = folders.catalog();
         for (const bool isLoaded : {false, true}) {
-            EXPECT_THAT(test::errorText(
+            EXPECT_THAT(errorText(
                             [&] {
                                 isLoaded ? void(catalog.load(reference("m/x")))
                                          : void(catalog.contentKey(reference("m/x")));
                             },
                             folders.folder.path()),
-                        testing::StartsWith("DIR/assets/" + why));
+                        StartsWith("DIR/assets/" + why));
         }
     };
     expectRefused("a.png",
@@ -300,9 +297,9 @@ TEST(Catalog, AHeightMapHasNoMoreThanItsSamples) {
     image::writePng(file("e.png"), image::Image16(4, 3, 1));
     expectRefused("e.png, colour_map: a.png",
                   "a.png: has 20000000000 bytes; a file of a scene has less than 4 GiB");
-    std::filesystem::rename(file("b.raw.yaml"), file("f.raw.yaml"));
+    fs::rename(file("b.raw.yaml"), file("f.raw.yaml"));
     folders.folder.write("assets/f.raw", std::string(48, '\0'));
-    std::filesystem::resize_file(file("f.raw.yaml"), 20'000'000'000);
+    fs::resize_file(file("f.raw.yaml"), 20'000'000'000);
     expectRefused("f.raw",
                   "f.raw.yaml: has 20000000000 bytes; a file of a scene has less than 4 GiB");
 }
@@ -318,11 +315,11 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
     EXPECT_EQ(scene.name, "my.obj");
     EXPECT_EQ(scene.origin.kind, Origin::Kind::Real);
     const auto missing = Node::scalar("../no.obj", {config, 2, 3});
-    EXPECT_EQ(test::errorText([&] { catalog.load(missing); }, folders.folder.path()),
+    EXPECT_EQ(errorText([&] { catalog.load(missing); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file '../no.obj' is not there; looked at DIR/no.obj");
     // Known before it is looked for, so that a check without a device finds it.
     const auto unknown = Node::scalar("my.FBX", {config, 2, 3});
-    EXPECT_EQ(test::errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
+    EXPECT_EQ(errorText([&] { catalog.resolve(unknown); }, folders.folder.path()),
               "DIR/mine/table.yaml:2:3: scene file my.FBX: unknown extension '.fbx'; .ply, .obj, "
               ".gltf, .glb, .off, .stl, .xyz and .las are allowed");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.fbx}]\n"),
@@ -366,9 +363,9 @@ TEST(Catalog, TurnsAUsersModelUp) {
         return catalog.contentKey(Node::scalar(file + params));
     };
     EXPECT_NE(key("?up=z"), key("?up=y"));
-    EXPECT_EQ(test::errorText([&] { load("?upp=z"); }, folders.folder.path()),
+    EXPECT_EQ(errorText([&] { load("?upp=z"); }, folders.folder.path()),
               "model 'DIR/tall.glb' has no parameter 'upp'; did you mean 'up'?; allowed: up");
-    EXPECT_EQ(test::errorText([&] { load("?up=x"); }), "up is x; allowed: y | z");
+    EXPECT_EQ(errorText([&] { load("?up=x"); }), "up is x; allowed: y | z");
 }
 
 TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {
@@ -377,12 +374,12 @@ TEST(Catalog, SaysWhereItLookedAndHowToGetIt) {
         "scene: m/x\ndoc: d\ncanonical: http://example.org/x.tar.gz\n"
         "sources: [{file: x/full.ply}, {file: x/small.ply, refine_to: 9}]\n");
     const Catalog catalog = folders.catalog();
-    EXPECT_EQ(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+    EXPECT_EQ(errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
               "table.yaml:5:8: scene 'm/x' not found; searched:\n"
               "  DIR/assets/x/full.ply\n"
               "  DIR/assets/x/small.ply\n"
               "get it with scripts/fetch-assets or from http://example.org/x.tar.gz");
-    EXPECT_EQ(test::errorText([&] { catalog.resolve(reference("m/y")); }),
+    EXPECT_EQ(errorText([&] { catalog.resolve(reference("m/y")); }),
               "table.yaml:5:8: unknown scene 'm/y'; did you mean 'm/x'? (`gfxrepro list scenes` "
               "prints all)");
 }
@@ -405,10 +402,9 @@ TEST(Catalog, TurnsFilesWhoseUpIsZ) {
     EXPECT_EQ(points.positions[0], glm::vec3(1, 3, -2));
     EXPECT_EQ(points.normals[0], glm::vec3(0, 1, 0));
     folders.entry("scene: m/x\ndoc: d\nsources: [{file: a.ply, points: 2}]\n");
-    EXPECT_EQ(
-        test::errorText([&] { folders.catalog().load(reference("m/x")); }, folders.folder.path()),
-        "DIR/scenes/m/x.yaml:3:11: 2 points wanted of a.ply, a cloud of 1; allowed: no more "
-        "than it has");
+    EXPECT_EQ(errorText([&] { folders.catalog().load(reference("m/x")); }, folders.folder.path()),
+              "DIR/scenes/m/x.yaml:3:11: 2 points wanted of a.ply, a cloud of 1; allowed: no more "
+              "than it has");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, up: x}]\n"),
               "DIR/scenes/m/x.yaml:3:29: up is x; allowed: y | z");
 }
@@ -452,14 +448,14 @@ TEST(Catalog, RefiningBelowTheFileIsLocated) {
     folders.folder.write("assets/two.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n");
     folders.entry("scene: m/x\ndoc: d\nsources: [{file: two.obj, refine_to: 1}]\n");
     const Catalog catalog = folders.catalog();
-    EXPECT_EQ(test::errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
+    EXPECT_EQ(errorText([&] { catalog.load(reference("m/x")); }, folders.folder.path()),
               "DIR/scenes/m/x.yaml:3:11: two.obj: cannot refine a mesh of 2 triangles to 1: it has "
               "more already");
 }
 
 /// The triangles and vertices that the thesis prints, from generators alone.
 TEST(ShippedCatalog, StandInsHaveThePrintedCounts) {
-    const test::TemporaryFolder noAssets;
+    const TemporaryFolder noAssets;
     const Catalog catalog(kShippedScenes, noAssets.path(), registeredGenerators());
     const struct {
         const char* name;

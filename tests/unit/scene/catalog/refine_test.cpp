@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
@@ -147,9 +146,9 @@ TEST(Refine, SurvivesDuplicateAndDegenerateTriangles) {
 }
 
 TEST(Refine, RefusesCountsItCannotReach) {
-    EXPECT_EQ(test::errorText([] { refinedTo(square(), 1); }),
+    EXPECT_EQ(errorText([] { refinedTo(square(), 1); }),
               "cannot refine a mesh of 2 triangles to 1: it has more already");
-    EXPECT_EQ(test::errorText([] { refinedTo(Mesh{}, 10); }),
+    EXPECT_EQ(errorText([] { refinedTo(Mesh{}, 10); }),
               "cannot refine a mesh without triangles to 10");
 }
 
