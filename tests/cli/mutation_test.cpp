@@ -65,7 +65,7 @@ void expectAnswer(const Arguments& arguments, const std::string& input) {
         << arguments[0] << ": exit code " << result.exitCode << "\n"
         << result.err << "\n--- of\n"
         << input;
-    EXPECT_EQ(result.err.find("assertion"), std::string::npos) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("assertion")));
     if (result.exitCode == 2) EXPECT_FALSE(result.err.empty()) << arguments[0];
 }
 

@@ -116,9 +116,7 @@ const std::string kBlind[] = {
 
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     const ProcessResult first = endedWith(2, nightOf("exit 0\n"));
-    EXPECT_NE(first.err.find("/first has no record of some case; the configs ask for 2\n"),
-              std::string::npos)
-        << first.err;
+    EXPECT_THAT(first.err, HasSubstr("/first has no record of some case; the configs ask for 2\n"));
     for (const std::string& blind : kBlind) {
         const ProcessResult result = nightOf(blind);
         EXPECT_EQ(result.exitCode, 2) << blind << result.out << result.err;
@@ -126,7 +124,7 @@ TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
 }
 
 TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
@@ -134,8 +132,8 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
     for (const std::string& script : {kBlind[1], kBlind[4]}) {
         const ProcessResult blind = nightOf(script);
         EXPECT_EQ(blind.exitCode, 2) << script << blind.out << blind.err;
-        EXPECT_NE(blind.err.find("(code, tests, failures)"), std::string::npos) << blind.err;
-        EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+        EXPECT_THAT(blind.err, HasSubstr("(code, tests, failures)"));
+        EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     }
     // Nor where it is slower on purpose; one that is slower is found, whatever it says itself.
     const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + kBlind[1];
@@ -143,13 +141,11 @@ TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
     EXPECT_EQ(nightOf(slow, {"--accept", "it is right"}).exitCode, 2);
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
     EXPECT_EQ(nightOf(slow).exitCode, 1);
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     // A judge that landed before, and ends with 0 whatever it found.
     folder.write("state/landed/gfxrepro", "#!/bin/sh\n" + kBlind[1]);
     const ProcessResult judged = endedWith(2, nightOf(slow));
-    EXPECT_NE(judged.err.find("nightly: the comparison ends with 0, and tells of "),
-              std::string::npos)
-        << judged.err;
+    EXPECT_THAT(judged.err, HasSubstr("nightly: the comparison ends with 0, and tells of "));
     isTimed = false;
     EXPECT_EQ(nightOf("exec " + kMock + '\n').exitCode, 2) << "nor lands what is no slower";
     EXPECT_EQ(landed(), "#!/bin/sh\n" + kBlind[1]);
@@ -180,14 +176,12 @@ TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
               0U)
         << first.err;
     const ProcessResult fix = endedWith(2, nightOf(fewer, {"--fix"}));
-    EXPECT_NE(fix.err.find("/first has no record of some case; the configs ask for 2\n"),
-              std::string::npos)
-        << fix.err;
+    EXPECT_THAT(fix.err, HasSubstr("/first has no record of some case; the configs ask for 2\n"));
     EXPECT_EQ(nightOf(fewer).exitCode, 1) << "lost, compared with the last build";
-    EXPECT_EQ(landed().find("--only"), std::string::npos);
+    EXPECT_THAT(landed(), Not(HasSubstr("--only")));
     EXPECT_EQ(nightOf(mock + "\n\n", {"--fix"}).exitCode, 0);
     EXPECT_EQ(nightOf(fewer, {"--fix", "--cases", "1"}).exitCode, 0) << "as it was said";
-    EXPECT_NE(landed().find("--only"), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("--only"));
 }
 
 /// The step of the workflow that shows a night.
@@ -219,7 +213,7 @@ TEST_F(Nightly, TheWorkflowShowsWhatTheNightHas) {
     isTimed = true;
     ASSERT_EQ(night(1).exitCode, 0);
     const ProcessResult later = endedWith(0, shown());
-    EXPECT_NE(later.out.find("With the fixed build:\n"), std::string::npos) << later.out;
+    EXPECT_THAT(later.out, HasSubstr("With the fixed build:\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "benchmark.json"));
 }
 
@@ -227,36 +221,35 @@ TEST_F(Nightly, TheSameBuildLandsAndASlowerOneAlarms) {
     isTimed = true;
     ASSERT_EQ(night(0).exitCode, 0);
     endedWith(0, night(1));
-    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos)
-        << "a microsecond of 20 ms is nothing";
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=1e-3 ")) << "a microsecond of 20 ms is nothing";
     EXPECT_TRUE(fs::exists(state + "/history.csv"));
-    EXPECT_NE(readFile(state + "/history.html").find("<svg"), std::string::npos);
+    EXPECT_THAT(readFile(state + "/history.html"), HasSubstr("<svg"));
     const ProcessResult slow = endedWith(1, night(15000));
-    EXPECT_NE(slow.out.find("alarm; measuring again\n"), std::string::npos) << slow.out;
-    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos) << "a slower build does not land";
+    EXPECT_THAT(slow.out, HasSubstr("alarm; measuring again\n"));
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=1e-3 ")) << "a slower build does not land";
     EXPECT_GE(keptRuns(), 28U) << "those of the alarm: two looks at both builds";
     // As it is meant to be slower:
     const ProcessResult accepted = endedWith(0, night(15000, false, "it is \"right\" now"));
-    EXPECT_NE(landed().find("EXTRA_MS=15000e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=15000e-3 "));
     EXPECT_FALSE(fs::exists(state + "/history.csv")) << "begins anew";
     const std::string reasons = readFile(state + "/accepted.csv");
-    EXPECT_NE(reasons.find(",1,\"it is \"\"right\"\" now\"\n"), std::string::npos) << reasons;
+    EXPECT_THAT(reasons, HasSubstr(",1,\"it is \"\"right\"\" now\"\n"));
     endedWith(0, night(0, true));
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
 }
 
 TEST_F(Nightly, AReasonIsKeptOfTheFirstNightToo) {
     ASSERT_EQ(night(0, false, "from now on").exitCode, 0);
     const std::string reasons = readFile(state + "/accepted.csv");
-    EXPECT_NE(reasons.find(",0,\"from now on\"\n"), std::string::npos) << reasons;
+    EXPECT_THAT(reasons, HasSubstr(",0,\"from now on\"\n"));
 }
 
 TEST_F(Nightly, ABuildWhosePictureChangedDoesNotLandAndTheEvidenceIsKept) {
     ASSERT_EQ(night(0).exitCode, 0);
     shade = "0.75";
     const ProcessResult other = endedWith(1, night(1));
-    EXPECT_NE(other.out.find("picture/flat: changed: FLIP "), std::string::npos) << other.out;
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(other.out, HasSubstr("picture/flat: changed: FLIP "));
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     std::size_t kept = 0;
     for (const auto& entry : fs::recursive_directory_iterator(state)) {
         const bool isKept = entry.path().string().find("/pictures/") != std::string::npos;
@@ -269,20 +262,19 @@ TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
     ASSERT_EQ(night(0).exitCode, 0);
     isCrashing = true;
     const ProcessResult refused = endedWith(1, night(1, false, "it is right"));
-    EXPECT_NE(refused.err.find("nightly: not accepted: what the last build measured is lost, or a "
-                               "case did not finish\n"),
-              std::string::npos)
-        << refused.err;
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(refused.err,
+                HasSubstr("nightly: not accepted: what the last build measured is lost, or a "
+                          "case did not finish\n"));
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
     EXPECT_EQ(night(1, true).exitCode, 4) << "nor does --fix";
-    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     fs::remove_all(state + "/landed");
     fs::copy(bundle(1), state + "/landed");  // as where the landed one crashes since then
     endedWith(4, night(2));
     isCrashing = false;
     endedWith(0, night(3));
-    EXPECT_NE(landed().find("EXTRA_MS=3e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=3e-3 "));
 }
 
 TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
@@ -296,7 +288,7 @@ TEST_F(Nightly, OneNightAtATimeAndAKilledOneLosesNothing) {
     other.signal(SIGKILL);
     other.wait();
     EXPECT_EQ(night(1).exitCode, 0);
-    EXPECT_NE(landed().find("EXTRA_MS=1e-3 "), std::string::npos);
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=1e-3 "));
     EXPECT_FALSE(fs::exists(state + "/landed.old") || fs::exists(state + "/landed.new"));
 }
 
@@ -309,10 +301,8 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
     isTimed = true;
     const ProcessResult week = night(15000);
     EXPECT_EQ(week.exitCode, 1) << week.out << week.err;
-    EXPECT_NE(week.out.find("nightly: with the fixed build\nalarm; measuring again\n"),
-              std::string::npos)
-        << week.out;
-    EXPECT_NE(landed().find("EXTRA_MS=15000e-3 "), std::string::npos);
+    EXPECT_THAT(week.out, HasSubstr("nightly: with the fixed build\nalarm; measuring again\n"));
+    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=15000e-3 "));
     // Thirteen nights at a third of the time, and thirteen as tonight's, without an overlap.
     const std::string history = readFile(state + "/history.csv");
     const std::size_t begin = history.find("_time_ms,ms,") + 12;
@@ -326,7 +316,7 @@ TEST_F(Nightly, WhatGotSlowerLittleByLittleIsFoundEachWeekAndInTheHistory) {
     }
     writeFileAtomic(state + "/history.csv", rows);
     const ProcessResult step = endedWith(1, night(15000));
-    EXPECT_NE(step.out.find("since night 14 of 27"), std::string::npos) << step.out;
+    EXPECT_THAT(step.out, HasSubstr("since night 14 of 27"));
 }
 
 TEST_F(Nightly, SaysWhatIsMissing) {

@@ -66,7 +66,7 @@ TEST(SameMean, IsAskedOfItsMetricAlone) {
           bodyOf("same_mean: p + 1, false_alarms: 1%" + origin)}) {
         const std::string error = checkError(body);
         EXPECT_TRUE(error.ends_with("claim 'X'" + refused)) << error;
-        EXPECT_NE(error.find(".yaml:"), std::string::npos) << error;
+        EXPECT_THAT(error, HasSubstr(".yaml:"));
     }
     const config::Experiment wrong = tables::experimentFrom(bodyOf(claim, "metric: rmse"));
     EXPECT_EQ(evaluateClaims(wrong, tables::buildTable(wrong, recorded({0.5})), kSoftwareDevice)

@@ -40,8 +40,8 @@ TEST(Cropped, RefusesWhatIsNoPart) {
                                  {0, 0, 1, -1},
                                  {most, 0, 1, 1},
                                  {1, 1, most, 1}}) {
-        EXPECT_NE(errorText([&] { cropped(image, part); }).find("are no part of an image of 6x5"),
-                  std::string::npos);
+        EXPECT_THAT(errorText([&] { cropped(image, part); }),
+                    HasSubstr("are no part of an image of 6x5"));
     }
     EXPECT_EQ(errorText([&] {
                   cropped(image, {0, 0, 4, 2}, 8193);

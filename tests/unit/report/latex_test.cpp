@@ -203,7 +203,7 @@ TEST(Latex, AWideTableLiesAcrossAndAWiderOneIsInBlocks) {
     EXPECT_EQ(count, 2U) << "each block has the labels";
     for (std::size_t i = 0; i < 20; ++i) {
         const std::string number = "& \\gfxrepro{p/1/1/quantity_" + std::to_string(i) + "}";
-        EXPECT_NE(blocks.find(number), blocks.npos);
+        EXPECT_THAT(blocks, HasSubstr(number));
         EXPECT_EQ(blocks.find(number), blocks.rfind(number)) << "each number stands once";
     }
 }

@@ -101,7 +101,7 @@ TEST(HeightMap, ReadsTiffsAndTheirNoData) {
     const std::string whole = readFile(path);
     for (std::size_t size = 0; size < whole.size(); size += 7) {
         writeFileAtomic(path, whole.substr(0, size));
-        EXPECT_NE(messageOf(path).find("a.tif: "), std::string::npos) << size;
+        EXPECT_THAT(messageOf(path), HasSubstr("a.tif: ")) << size;
     }
 }
 
@@ -224,7 +224,7 @@ TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
     const std::string whole = readFile(path);
     for (std::size_t size = 0; size + 13 < whole.size(); size += 5) {  // less the closing chunk
         writeFileAtomic(path, whole.substr(0, size));
-        EXPECT_NE(messageOf(path).find("a.png: "), std::string::npos) << size;
+        EXPECT_THAT(messageOf(path), HasSubstr("a.png: ")) << size;
     }
     // Width and height behind a signature of 8, a length of 4 and "IHDR"; then their checksum.
     const auto messageWithSide = [&](std::uint32_t side) {

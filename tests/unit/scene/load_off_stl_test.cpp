@@ -203,8 +203,8 @@ TEST_F(LoadOffStl, RefusesBrokenStl) {
     EXPECT_EQ(stlError("solid\nvertex 0 0 1e10\n"),
               "DIR/a.STL:2: a coordinate is 1e+10; -1e+09 to 1e+09 are allowed");
     EXPECT_EQ(stlError("solid\nvertex 0 0 1\n"), "DIR/a.STL:3: the file ends within a facet");
-    EXPECT_NE(stlError(fmt::format("solid\n{}", kFacet)).find(": the file ends without 'endsolid'"),
-              std::string::npos)
+    EXPECT_THAT(stlError(fmt::format("solid\n{}", kFacet)),
+                HasSubstr(": the file ends without 'endsolid'"))
         << "cut between two facets";
     EXPECT_EQ(stlError("solid\nfacets\n"),
               "DIR/a.STL:2: 'facets' is unknown; solid, facet normal, outer loop, vertex, endloop, "
