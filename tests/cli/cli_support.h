@@ -16,8 +16,7 @@
 namespace gfxrepro::test {
 
 /// A test with a folder, and the place of a run in it.
-class RunTest : public FolderTest {
-  protected:
+struct RunTest : FolderTest {
     const std::string dir = folder.path() / "run";
 };
 

@@ -8,8 +8,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class BrokenClock : public testing::Test {
-  protected:
+struct BrokenClock : testing::Test {
     BrokenClock() {
         writeFileAtomic(folder.path() / "torus.yaml",
                         "sweep_of: torus\ntitle: A torus\ntechnique: voxelization\n"

@@ -9,8 +9,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class Compare : public ::testing::Test {
-  protected:
+struct Compare : ::testing::Test {
     /// The mock program, slower by `extraMs` in each iteration, whose picture is of this shade.
     std::string program(const std::string& name, int extraMs,
                         const std::string& shade = "0.5") const {

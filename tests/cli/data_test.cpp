@@ -22,8 +22,7 @@ constexpr const char* kLines =
     "  bad: {says: what failed, bound: bad, at_most: 3, bound_from: ours}\n"
     "plots: [{x: number, y: out}]\n";
 
-class Data : public testing::Test {
-  protected:
+struct Data : testing::Test {
     ProcessResult run(const std::string& lines) {
         config_ = writeMockConfig(folder_, lines);
         return mockGfxrepro({"reproduce", config_, "--out", dir("run")});

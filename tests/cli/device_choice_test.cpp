@@ -15,8 +15,7 @@ bool hasRealGpu() {
     });
 }
 
-class DeviceChoice : public testing::Test {
-  protected:
+struct DeviceChoice : testing::Test {
     /// One case of the mock on `device`, with the software device as a GPU that serves or not.
     ProcessResult onPretended(const std::string& device, const std::string& how = "serves",
                               const std::vector<std::string>& more = {}) {

@@ -19,8 +19,7 @@ using Arguments = std::vector<std::string>;
 constexpr int kKilled = -1;
 constexpr int kCallsTried = 4;  // of a command and a failure, spread over all
 
-class FailingCalls : public testing::Test {
-  protected:
+struct FailingCalls : testing::Test {
     FailingCalls() {
         config_ = writeMockConfig(
             folder_,

@@ -19,8 +19,7 @@ using image::ExrImage;
 using image::Image8;
 using image::ImageF;
 
-class ImageCommands : public ::testing::Test {
-  protected:
+struct ImageCommands : ::testing::Test {
     std::string at(const char* name) const { return (folder_.path() / name).string(); }
 
     /// 16 × 12, a step between two colours at column 8, with depth, normals, ids and attributes.

@@ -84,8 +84,7 @@ class Logged {
     std::string line_;
 };
 
-class Mock : public technique::Technique {
-  public:
+struct Mock : technique::Technique {
     explicit Mock(Params& params)
         : behaviour_(params.getEnum("behaviour", Behaviour::Ok, kBehaviours, {"what happens"})),
           number_(params.getInt("number", 0, {"given back as a metric"})),
@@ -215,8 +214,7 @@ class Mock : public technique::Technique {
     std::size_t shown_ = 0;
 };
 
-class MockOfScenes : public Mock {
-  public:
+struct MockOfScenes : Mock {
     using Mock::Mock;
     technique::SceneNeed sceneNeed() const override { return technique::SceneNeed::Model; }
 };
@@ -229,8 +227,7 @@ config::Outputs outputs() {
 }
 
 /// Draws random numbers, and a picture that is another in each process where it `wobbles`.
-class Dice : public technique::Technique {
-  public:
+struct Dice : technique::Technique {
     explicit Dice(Params& params)
         : wobbles_(params.getBool("wobbles", false, {"draws another picture in each process"})) {
         params.finish();

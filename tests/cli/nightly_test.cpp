@@ -14,8 +14,7 @@ namespace {
 /// To open a device is most of what a short night takes.
 constexpr const char* kTechnique = "mock_on_cpu";
 
-class Nightly : public ::testing::Test {
-  protected:
+struct Nightly : ::testing::Test {
     /// What nights look for in most tests shows without times.
     std::string measure() const {
         return isTimed ? "measure: {lane: timing, processes: 1, repeats: 2}\n"

@@ -8,8 +8,7 @@ namespace gfxrepro::test {
 namespace {
 
 /// A program that draws random numbers, of which nothing runs; `images` is that of its picture.
-class OwnProgram : public ::testing::Test {
-  protected:
+struct OwnProgram : ::testing::Test {
     struct Parts {
         std::string metrics = "{rays: ray}";
         std::string truth = "{n: 4096, seed: 99}";

@@ -7,8 +7,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class TwoBuilds : public FolderTest {
-  protected:
+struct TwoBuilds : FolderTest {
     /// A build in `place` that says how long it takes, and leaves a picture of 64 × 64 pixels.
     void build(const std::string& place, int ms, char first = 'a', char others = 'd') const {
         fs::permissions(

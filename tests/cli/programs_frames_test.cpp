@@ -11,8 +11,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class Frames : public testing::Test {
-  protected:
+struct Frames : testing::Test {
     ProcessResult run(const std::string& config) const {
         return gfxrepro({"run", config, "--out", dir});
     }

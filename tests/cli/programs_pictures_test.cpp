@@ -12,8 +12,7 @@ namespace {
 
 using image::ImageF;
 
-class PicturesOfPrograms : public testing::Test {
-  protected:
+struct PicturesOfPrograms : testing::Test {
     /// Runs a config whose program leaves the file `made`, of which `truth` is the truth.
     ProcessResult run(const std::string& made, const std::string& truth) const {
         const std::string ending = fs::path(made).extension();

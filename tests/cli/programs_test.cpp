@@ -52,8 +52,7 @@ constexpr const char* kProgram =
     "  metrics: {number: \"1\"}\n"
     "  files: [picture.png]\n";
 
-class ExternalProgram : public testing::Test {
-  protected:
+struct ExternalProgram : testing::Test {
     ExternalProgram() {
         fs::permissions(folder.write("renderer.sh", kRenderer), fs::perms::owner_all);
         image::Image8 picture(32, 16, 3, 100);

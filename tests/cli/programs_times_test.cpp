@@ -29,8 +29,7 @@ constexpr const char* kSleeps =
     "  metrics: {own_ms: ms}\n";
 constexpr const char* kImages = "  images: {result: {file: result.png, truth: {number: 99}}}\n";
 
-class Timed : public testing::Test {
-  protected:
+struct Timed : testing::Test {
     Timed() {
         fs::permissions(folder.write("renderer.sh", kSleeper), fs::perms::owner_all);
         folder.write("own_ms", "50");

@@ -18,8 +18,7 @@ namespace gfxrepro::test {
 namespace {
 
 /// Does something as soon as a unit has begun.
-class AtBegin : public run::Observer {
-  public:
+struct AtBegin : run::Observer {
     explicit AtBegin(std::function<void()> act) : act_(std::move(act)) {}
     void unitBegan(const run::Unit&) override { act_(); }
     void unitEnded(const run::Unit&, records::Status, const std::string&) override {}
@@ -29,8 +28,7 @@ class AtBegin : public run::Observer {
     std::function<void()> act_;
 };
 
-class SchedulerTest : public ::testing::Test {
-  protected:
+struct SchedulerTest : ::testing::Test {
     /// Measures what a run of the config has planned into another folder.
     run::RunOutcome measure(const std::string& config, const std::function<void()>& atBegin,
                             std::size_t mostRecords = records::kMostRecords) {
@@ -109,8 +107,7 @@ TEST_F(SchedulerTest, ASceneOfSeveralTablesGoesToOneWorker) {
 }
 
 /// The mock writes down what it does, and sets up for a while.
-class PairedUnits : public SchedulerTest {
-  protected:
+struct PairedUnits : SchedulerTest {
     PairedUnits() {
         arePaired = true;
         setenv("GFXREPRO_MOCK_SETUP_MS", "300", 1);

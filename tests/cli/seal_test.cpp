@@ -9,8 +9,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class Seal : public ::testing::Test {
-  protected:
+struct Seal : ::testing::Test {
     static constexpr const char* kBody =
         "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
         "layout:\n  rows: behaviour\n  columns:\n"

@@ -13,8 +13,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class Untrusted : public ::testing::Test {
-  protected:
+struct Untrusted : ::testing::Test {
     void SetUp() override {
         const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
         ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);

@@ -5,8 +5,7 @@
 namespace gfxrepro::test {
 namespace {
 
-class PassTest : public GlTest {
-  protected:
+struct PassTest : GlTest {
     gl::Pass pass(const std::string& file, const std::string& text) const {
         return GlTest::pass({{file, "#version 450 core\n" + text}});
     }

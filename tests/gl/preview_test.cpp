@@ -10,8 +10,7 @@ namespace {
 
 using scene::Scene;
 
-class PreviewTest : public GlTest {
-  protected:
+struct PreviewTest : GlTest {
     gl::ShaderLibrary shaders{dataFolder("shaders")};
 };
 

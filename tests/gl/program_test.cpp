@@ -6,8 +6,7 @@ namespace gfxrepro::test {
 namespace {
 
 /// Needs no device.
-class ShaderSourceTest : public ::testing::Test {
-  protected:
+struct ShaderSourceTest : ::testing::Test {
     std::string assembleError(const std::string& file) const {
         return errorText([&] { library.assemble(file, {}); }, folder.path());
     }

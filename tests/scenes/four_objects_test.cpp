@@ -13,8 +13,7 @@
 namespace gfxrepro::raycast {
 namespace {
 
-class FourObjects : public testing::Test {
-  protected:
+struct FourObjects : testing::Test {
     FourObjects() {
         Params params({}, "generator 'four_objects'");
         scene_ = scene::fourObjects(params, 1);

@@ -13,8 +13,7 @@ namespace gfxrepro::raycast {
 namespace {
 
 /// Made once: the tests only look.
-class LivingRoom : public testing::Test {
-  protected:
+struct LivingRoom : testing::Test {
     static void SetUpTestSuite() {
         Params params(parseYaml("{}", "t.yaml"), "generator 'living_room'");
         scene_ =

@@ -38,8 +38,7 @@ class TemporaryFolder {
 };
 
 /// A test with a folder of its own.
-class FolderTest : public testing::Test {
-  protected:
+struct FolderTest : testing::Test {
     const TemporaryFolder folder;
 };
 

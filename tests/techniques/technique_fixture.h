@@ -33,8 +33,7 @@ inline void expectRefused(const technique::TechniqueInfo& technique,
 }
 
 /// Derive from it with the technique and the size of its output.
-class TechniqueTest : public GlTest {
-  protected:
+struct TechniqueTest : GlTest {
     TechniqueTest(const technique::TechniqueInfo& technique, const glm::ivec2& outputSizePx)
         : technique_(technique), outputSizePx_(outputSizePx) {}
 

@@ -16,8 +16,7 @@
 namespace gfxrepro::test {
 
 /// Keeps what a technique records.
-class MetricRecorder final : public technique::Recorder {
-  public:
+struct MetricRecorder final : technique::Recorder {
     void metric(std::string_view metric, double value, std::string_view pass,
                 std::optional<std::string_view>) override {
         const auto key = std::string(metric) + (pass.empty() ? "" : "/") + std::string(pass);

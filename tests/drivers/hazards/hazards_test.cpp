@@ -30,8 +30,7 @@ layout(location = 0) out uint value;
 void main() { value = texelFetch(picture, ivec2(gl_FragCoord.xy), 0).r; }
 )";
 
-class Hazards : public GlTest {
-  protected:
+struct Hazards : GlTest {
     void SetUp() override { hazards::take(); }
 
     static void dispatch(const gl::Program& program) {

@@ -19,8 +19,7 @@ struct Case {
     std::vector<ClusterCamera> cameras;
 };
 
-class ClusterCamerasTest : public ClusterTest {
-  protected:
+struct ClusterCamerasTest : ClusterTest {
     Case build(const reflections::ReflectiveScene& scene, const kit::View& view,
                const CameraSettings& settings, const BinSettings& bins = {},
                const std::vector<std::uint8_t>* wanted = nullptr) {

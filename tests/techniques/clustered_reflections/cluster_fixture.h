@@ -60,8 +60,7 @@ inline kit::View viewFrom(const glm::vec3& eye, const glm::vec3& target, glm::iv
 /// Of a reflector, a cluster.
 inline const BinSettings kOneBin{.maxThetaBins = 1, .maxPhiBins = 1};
 
-class ClusterTest : public reflections::ReflectionsTest {
-  protected:
+struct ClusterTest : reflections::ReflectionsTest {
     reflections::GBuffer render(const reflections::ReflectiveScene& scene,
                                 const kit::View& view) const {
         reflections::GpuObjects objects(scene);

@@ -16,8 +16,7 @@ using reflections::ReflectiveScene;
 
 constexpr std::uint32_t kNoReflector = 9999;  // of a scene
 
-class ClusterImagesTest : public TracerTest {
-  protected:
+struct ClusterImagesTest : TracerTest {
     /// A camera that looks along `towards`, its frustum off its centre.
     static ClusterCamera cameraLooking(const glm::vec3& eye, const glm::vec3& towards,
                                        glm::ivec2 sizePx) {

@@ -17,8 +17,7 @@
 namespace gfxrepro::clustered_reflections {
 namespace {
 
-class ClusteredReflectionsTest : public test::TechniqueTest {
-  protected:
+struct ClusteredReflectionsTest : test::TechniqueTest {
     ClusteredReflectionsTest() : TechniqueTest(kClusteredReflections, {48, 40}) {}
 
     using Metrics = std::map<std::string, double>;

@@ -13,8 +13,7 @@ using reflections::ReflectiveScene;
 using rooms::Surface;
 namespace shapes = voxelization::shapes;
 
-class ClusteredTracerTest : public TracerTest {
-  protected:
+struct ClusteredTracerTest : TracerTest {
     /// A room whose wall at −z is a mirror.
     static scene::Scene mirrorRoom() {
         scene::Scene scene = furnishedRoomBefore();

@@ -24,8 +24,7 @@ reflections::ReflectiveScene fourReflectors() {
     return MirrorScene().add(ball()).add(ball()).add(squareMesh()).add(ball()).get();
 }
 
-class ClusteringTest : public ClusterTest {
-  protected:
+struct ClusteringTest : ClusterTest {
     void expectAsOnHost(const reflections::ReflectiveScene& scene,
                         const reflections::GBuffer& gbuffer, const BinSettings& bins,
                         const std::vector<std::uint8_t>* wanted = nullptr) {

@@ -251,8 +251,7 @@ std::vector<Ray> randomRays(const Image& image, Random& random, int count) {
     return rays;
 }
 
-class MarchTest : public test::GlTest {
-  protected:
+struct MarchTest : test::GlTest {
     struct DeviceHits {
         std::vector<glm::vec4> hits;
         std::vector<glm::vec2> places;

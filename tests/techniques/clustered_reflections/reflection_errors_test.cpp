@@ -10,8 +10,7 @@ namespace {
 
 /// A mirror in the plane z = 0, a screen before a wall; the camera stands at z = −1 behind the
 /// mirror and looks through it, 45° to each side.
-class OcclusionTest : public testing::Test {
-  protected:
+struct OcclusionTest : testing::Test {
     OcclusionTest() : scene_(makeScene()), rays_(scene_.scene()) {
         const glm::mat4 view = glm::lookAt(glm::vec3(0, 0, -1), glm::vec3(0), glm::vec3(0, 1, 0));
         camera_.clipFromWorld = glm::frustum(-1.0F, 1.0F, -1.0F, 1.0F, 1.0F, 11.0F) * view;

@@ -44,8 +44,7 @@ struct Traced {
     }
 };
 
-class TracerTest : public test::SuiteDeviceTest {
-  protected:
+struct TracerTest : test::SuiteDeviceTest {
     static Traced trace(const reflections::ReflectiveScene& scene, const scene::Camera& camera,
                         ClusteredSettings settings, int sizePx = 128) {
         settings.camera.diagonalM = scene.diagonalM();

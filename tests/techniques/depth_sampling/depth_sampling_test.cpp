@@ -14,8 +14,7 @@
 namespace gfxrepro::depth_sampling {
 namespace {
 
-class DepthSamplingTest : public test::TechniqueTest {
-  protected:
+struct DepthSamplingTest : test::TechniqueTest {
     using Metrics = std::map<std::string, double>;
 
     DepthSamplingTest() : TechniqueTest(kDepthSampling, {96, 96}) {}

@@ -19,8 +19,7 @@ constexpr float kEyeZ = 8.0F;
 constexpr float kOccluderZ = 1.0F;
 enum TriangleId : std::uint32_t { T0 = 1, T1 = 2, T2 = 3 };
 
-class Figure10Test : public test::GlTest {
-  protected:
+struct Figure10Test : test::GlTest {
     /// The point of height z that lands on I₀ at these pixel coordinates.
     static glm::vec3 landingAt(glm::vec2 px, float z) {
         const float halfWidthPx = 4.0F;

@@ -18,8 +18,7 @@ using kit::HostDepthImage;
 using kit::View;
 using test::HostImages;
 
-class PixelMeasuresTest : public test::GlTest {
-  protected:
+struct PixelMeasuresTest : test::GlTest {
     /// Copies of host images on the device.
     struct OnDevice {
         std::vector<DepthImage> images;
@@ -372,8 +371,7 @@ scene::Scene wallAndHiddenBlock() {
     return scene::sceneOf(builder.take("wall and block", -1));
 }
 
-class NextViewTest : public test::GlTest {
-  protected:
+struct NextViewTest : test::GlTest {
     kit::DepthImage conventional(const scene::Camera& camera) {
         auto image = renderer.makeImage(kit::viewOf(camera, {48, 48}));
         renderer.render(scene, image);

@@ -45,8 +45,7 @@ inline scene::Mesh randomTriangles(int count, float size, std::uint64_t seed) {
     return mesh;
 }
 
-class DepthImageTest : public test::GlTest {
-  protected:
+struct DepthImageTest : test::GlTest {
     DepthImageRenderer makeRenderer(DepthFormat format = DepthFormat::Float32,
                                     TriangleIds ids = TriangleIds::PrimitiveId) const {
         return {shaders, ids, format};

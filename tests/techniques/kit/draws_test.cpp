@@ -8,8 +8,7 @@
 namespace gfxrepro::kit {
 namespace {
 
-class FlushedDrawsTest : public test::GlTest {
-  protected:
+struct FlushedDrawsTest : test::GlTest {
     using Pieces = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
     static Pieces piecesOf(FlushedDraws draws) {
         Pieces pieces;

@@ -8,8 +8,7 @@
 namespace gfxrepro::kit {
 namespace {
 
-class PrefixSumTest : public DepthImageTest {
-  protected:
+struct PrefixSumTest : DepthImageTest {
     /// What becomes of the values, with one behind them that is 77 before.
     template <class T>
     std::vector<T> summed(std::vector<T> values, const char* type, PrefixSum::Total total) {

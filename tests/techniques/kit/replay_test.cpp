@@ -180,8 +180,7 @@ Verdict Replay::pixel(glm::ivec2 pixel, std::span<const HostDepthImage> earlier)
 
 constexpr int kReplaySizePx = 96;
 
-class ReplayTest : public DepthImageTest {
-  protected:
+struct ReplayTest : DepthImageTest {
     static std::vector<glm::ivec2> pixels() {
         std::vector<glm::ivec2> all;
         for (int y = 0; y < kReplaySizePx; ++y) {

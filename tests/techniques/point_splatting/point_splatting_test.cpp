@@ -27,8 +27,7 @@ scene::Scene bumpySphere(int count) {
     return scene;
 }
 
-class PointSplattingTest : public test::TechniqueTest {
-  protected:
+struct PointSplattingTest : test::TechniqueTest {
     PointSplattingTest() : TechniqueTest(kPointSplatting, {96, 96}) {}
 };
 

@@ -102,8 +102,7 @@ inline glm::dvec3 shadedReference(const glm::dvec3& color, const glm::dvec3& nor
     return 255.0 * (color * (0.1 + 0.9 * diffuse) + 0.15 * highlight * diffuse);
 }
 
-class SplatTest : public test::GlTest {
-  protected:
+struct SplatTest : test::GlTest {
     static ModelFile modelOf(const scene::PointCloud& points) {
         const TemporaryFolder kept;  // a mapped file outlives its name
         return ModelFile::openOrBuild(kept.path(), points, {});

@@ -8,8 +8,7 @@
 namespace gfxrepro::point_splatting {
 namespace {
 
-class SplatShaderTest : public SplatTest {
-  protected:
+struct SplatShaderTest : SplatTest {
     SplatShaderTest() {
         fs::copy(dataFolder("shaders") / "point_splatting", folder.path() / "point_splatting");
     }

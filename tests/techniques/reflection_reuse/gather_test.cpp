@@ -46,8 +46,7 @@ glm::vec3 seenInFineBall(const glm::vec3& point, const glm::vec3& eyeWorld) {
     return kBallCentre + kBallRadiusM * glm::vec3(normal);
 }
 
-class GatherTest : public KeyFrameTest {
-  protected:
+struct GatherTest : KeyFrameTest {
     struct Gathered {
         reflections::HostGBuffer gbuffer;  // of the new view
         std::vector<float> distanceM;      // of its mirror rays, by Embree

@@ -96,8 +96,7 @@ inline scene::Scene roomWithAll() {
     return scene;
 }
 
-class KeyFrameTest : public reflections::ReflectionsTest {
-  protected:
+struct KeyFrameTest : reflections::ReflectionsTest {
     KeyFrame keyFrame(const scene::Scene& source, const scene::Camera& camera,
                       glm::ivec2 sizePx) const {
         return KeyFrame(shaders, source, camera, sizePx);

@@ -35,8 +35,7 @@ TEST(MatchingDistanceTest, OfAPointInTheCandidateItselfIsItsOwn) {
     EXPECT_FLOAT_EQ(matchingDistance({1, 1, 1}, {0, 1, 0}, {1, 1, 1}, {1, 1, 3}), 2.0F);
 }
 
-class MatchingSearchTest : public KeyFrameTest {
-  protected:
+struct MatchingSearchTest : KeyFrameTest {
     struct Outcome {
         int count = 0, valid = 0;
         int missed = 0;       // ended elsewhere than the exhaustive search, and farther away

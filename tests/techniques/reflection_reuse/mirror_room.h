@@ -48,8 +48,7 @@ struct Frame {
     double matchingSteps = 0.0;
 };
 
-class ReuseTest : public reflections::ReflectionsTest {
-  protected:
+struct ReuseTest : reflections::ReflectionsTest {
     static constexpr glm::ivec2 kSize{120, 96};
 
     /// A scene, its truth, and what reuses reflections in it.

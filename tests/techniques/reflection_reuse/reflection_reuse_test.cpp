@@ -48,8 +48,7 @@ TEST(ReuseParamsTest, ReflectionsAreGatheredByDefault) {
     EXPECT_EQ(printed.reprojection.resampling, Resampling::Twice);
 }
 
-class ReflectionReuseTest : public test::TechniqueTest {
-  protected:
+struct ReflectionReuseTest : test::TechniqueTest {
     ReflectionReuseTest() : TechniqueTest(kReflectionReuse, {64, 48}) {}
 
     /// What is recorded of frames 0 … frameCount − 1, each rendered `repeats` times.

@@ -60,8 +60,7 @@ struct Seen {
         : surface(samples.surface), depthM(samples.depthM), from(fromView) {}
 };
 
-class ReprojectionTest : public reflections::ReflectionsTest {
-  protected:
+struct ReprojectionTest : reflections::ReflectionsTest {
     void upload(const Samples& samples) {
         key.emplace(view(), 10.0F);
         offsets.emplace(kSize);

@@ -12,8 +12,7 @@ namespace {
 constexpr glm::ivec2 kSize{97, 65};  // the view's axis is a pixel's middle
 constexpr glm::ivec2 kMiddle = kSize / 2;
 
-class BeamTest : public ReflectionsTest {
-  protected:
+struct BeamTest : ReflectionsTest {
     /// The middle of the view, 4 m away, is a mirror around the origin.
     GBuffer mirrorSeen(scene::Mesh mesh, float tiltRad = 0.0F) const {
         scene::Scene source;

@@ -8,8 +8,7 @@ namespace {
 
 constexpr glm::ivec2 kOutputSize{5, 3};
 
-class CompositeTest : public ReflectionsTest {
-  protected:
+struct CompositeTest : ReflectionsTest {
     /// G-buffer and reflected colours of random values; every third sample reflects nothing, and
     /// its reflected colour is not a number.
     void fill(int supersampling) {

@@ -43,8 +43,7 @@ bool isTowardsMirror(const glm::vec3& direction) {
     return time > 0.0F && std::max(std::abs(at.x), std::abs(at.y)) < 0.45F;
 }
 
-class EnvironmentMapTest : public ReflectionsTest {
-  protected:
+struct EnvironmentMapTest : ReflectionsTest {
     EnvironmentMap drawn(const scene::Scene& source, const glm::vec3& centre = kCentre) const {
         const ReflectiveScene scene(source);
         EnvironmentMap map(shaders, scene, centre);
@@ -109,8 +108,7 @@ TEST_F(EnvironmentMapTest, ShowsTheBackgroundWhereNothingIs) {
     }
 }
 
-class EnvironmentTracerTest : public ReflectionsTest {
-  protected:
+struct EnvironmentTracerTest : ReflectionsTest {
     /// The mirror, seen from the middle of the room.
     Prepared prepared(float mirrorRoughness = 0.0F) const {
         return {shaders,

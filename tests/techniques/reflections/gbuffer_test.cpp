@@ -44,8 +44,7 @@ kit::View viewOfScene() {
         kBufferSize);
 }
 
-class GBufferTest : public ReflectionsTest {
-  protected:
+struct GBufferTest : ReflectionsTest {
     GBufferTest() {
         objects.setPoses(ballPoses(scene));
         posed = prepared.scene();

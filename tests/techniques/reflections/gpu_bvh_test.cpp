@@ -51,8 +51,7 @@ struct Differences {
     std::size_t barycentrics = 0;   // of the same triangle, by more than 1e-3
 };
 
-class GpuBvhTest : public ReflectionsTest {
-  protected:
+struct GpuBvhTest : ReflectionsTest {
     void pose(const scene::Scene& scene) {
         reflective_.emplace(scene);
         objects_.emplace(*reflective_);

@@ -44,8 +44,7 @@ struct Comparison {
     double radianceError = 0.0;  // mean absolute
 };
 
-class GpuRayTracerTest : public ReflectionsTest {
-  protected:
+struct GpuRayTracerTest : ReflectionsTest {
     Prepared prepared(const scene::Scene& source, std::optional<float> glossiness = {}) const {
         return {shaders,
                 source,

@@ -11,8 +11,7 @@
 namespace gfxrepro::reflections {
 namespace {
 
-class RadixSortTest : public test::GlTest {
-  protected:
+struct RadixSortTest : test::GlTest {
     /// Sorts keys with their places as values; values tell whether equal keys kept their order.
     void expectSorted(const std::vector<std::uint32_t>& keys, std::uint32_t keyBits,
                       std::size_t capacity) {

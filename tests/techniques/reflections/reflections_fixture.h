@@ -145,8 +145,7 @@ int forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
     return count;
 }
 
-class ReflectionsTest : public test::GlTest {
-  protected:
+struct ReflectionsTest : test::GlTest {
     /// A compute shader that includes reflections/INCLUDE.glsl. Its invocations are at `pixel` and,
     /// row by row, `i`; `body` reads inputs[i], if members are given, and writes vec4s results[].
     gl::Pass compute(const std::string& include, const std::string& members,

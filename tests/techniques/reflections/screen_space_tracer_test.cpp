@@ -33,8 +33,7 @@ struct Traced {
     std::vector<float> distanceM;
 };
 
-class ScreenSpaceTracerTest : public TracerTest {
-  protected:
+struct ScreenSpaceTracerTest : TracerTest {
     Traced traced(const Prepared& prepared, const LobeSettings& lobe) {
         ScreenSpaceTracer tracer(shaders, prepared.map, lobe, prepared.scene.diagonalM(),
                                  kThicknessM);

@@ -153,8 +153,7 @@ struct EmbreeTrace {
     }
 };
 
-class TracerTest : public ReflectionsTest {
-  protected:
+struct TracerTest : ReflectionsTest {
     EmbreeTrace trace(const scene::Scene& source, const scene::Camera& from, glm::ivec2 sizePx,
                       const LobeSettings& lobe = {}) {
         return {shaders, source, from, sizePx, lobe, profiler};

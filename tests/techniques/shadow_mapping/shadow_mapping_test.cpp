@@ -24,8 +24,7 @@ scene::Scene plateOverFloor() {
     return scene;
 }
 
-class ShadowMappingTest : public test::TechniqueTest {
-  protected:
+struct ShadowMappingTest : test::TechniqueTest {
     ShadowMappingTest() : TechniqueTest(kShadowMapping, {96, 96}) {}
     scene::Scene scene_ = plateOverFloor();
 };

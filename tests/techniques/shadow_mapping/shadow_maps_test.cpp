@@ -53,8 +53,7 @@ struct Terms {
     std::vector<glm::vec4> shadow, position;
 };
 
-class ShadowMapsTest : public test::GlTest {
-  protected:
+struct ShadowMapsTest : test::GlTest {
     Terms termsOf(const ShadowMapSettings& settings, const std::vector<Light>& lights,
                   bool hasSquare = true) {
         const kit::DrawableScene scene(floorAndSquare(hasSquare));

@@ -28,8 +28,7 @@ scene::Scene tracedPlateOverFloor() {
     return scene::sceneOf(builder.take("test", -1));
 }
 
-class ShadowTruthTest : public testing::Test {
-  protected:
+struct ShadowTruthTest : testing::Test {
     ShadowTruthTest() {
         scene::Camera camera;
         camera.position = {0.0F, 0.45F, 3.5F};  // below the plate: sees all of its shadow

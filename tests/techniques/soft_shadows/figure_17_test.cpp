@@ -48,8 +48,7 @@ const Ellipse* ellipseAt(const glm::vec2& p) {
     return nullptr;
 }
 
-class Figure17Test : public ReconstructionTest {
-  protected:
+struct Figure17Test : ReconstructionTest {
     void SetUp() override {
         const auto imageWithOffset = [&](float offsetPx) {
             HostDepthImage image =

@@ -45,8 +45,7 @@ float insidePlate(const glm::vec3& point, const glm::vec3& light) {
     return 0.5F - std::max(std::abs(at.x), std::abs(at.z));
 }
 
-class LightVisibilityTest : public testing::Test {
-  protected:
+struct LightVisibilityTest : testing::Test {
     LightVisibilityTest()
         : scene(litPlateOverFloor()),
           drawable(scene),

@@ -24,8 +24,7 @@ struct HostMesh {
     std::vector<glm::uvec3> triangles;
 };
 
-class ReconstructionTest : public test::SuiteDeviceTest {
-  protected:
+struct ReconstructionTest : test::SuiteDeviceTest {
     static HostMesh reconstruct(const ImagePair& images, std::span<const glm::vec3> normals,
                                 const ReconstructionSettings& settings) {
         using kit::DepthFormat;

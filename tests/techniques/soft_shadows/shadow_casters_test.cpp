@@ -18,8 +18,7 @@ namespace {
 using kit::View;
 namespace shapes = voxelization::shapes;
 
-class ShadowCastersTest : public ReconstructionTest {
-  protected:
+struct ShadowCastersTest : ReconstructionTest {
     /// Depth along the view axis a pixel, rows from the bottom; 0 where nothing was drawn.
     static std::vector<float> depthsOf(const ShadowCaster& caster, const View& view) {
         const gl::Texture depth = gl::Texture::make2D(GL_DEPTH_COMPONENT32F, view.sizePx);

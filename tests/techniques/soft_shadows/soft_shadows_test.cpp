@@ -13,8 +13,7 @@
 namespace gfxrepro::soft_shadows {
 namespace {
 
-class SoftShadowsTest : public test::TechniqueTest {
-  protected:
+struct SoftShadowsTest : test::TechniqueTest {
     SoftShadowsTest() : TechniqueTest(kSoftShadows, {48, 48}) {}
 
     using Metrics = std::map<std::string, double>;

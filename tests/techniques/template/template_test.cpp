@@ -17,8 +17,7 @@ namespace {
 
 constexpr glm::ivec2 kSizePx{96, 64};
 
-class TemplateTest : public test::TechniqueTest {
-  protected:
+struct TemplateTest : test::TechniqueTest {
     TemplateTest() : TechniqueTest(kTemplate, kSizePx) {}
 };
 

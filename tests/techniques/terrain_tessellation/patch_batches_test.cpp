@@ -11,8 +11,7 @@ namespace {
 
 constexpr float kFootM = -5.0F;
 
-class PatchBatchesTest : public testing::Test {
-  protected:
+struct PatchBatchesTest : testing::Test {
     PatchBatchesTest()
         : map(roughMap(257, 40.0F)),
           metadata(TerrainMetadata::build(map, {8, 8})),

@@ -8,8 +8,7 @@
 namespace gfxrepro::terrain_tessellation {
 namespace {
 
-class SeamCheckTest : public TerrainTest {
-  protected:
+struct SeamCheckTest : TerrainTest {
     SeamCheckTest() { makeTerrain(roughMap(257, 60.0F)); }
 
     RenderSettings capturing(EdgeRule edges = EdgeRule::Shared) const {

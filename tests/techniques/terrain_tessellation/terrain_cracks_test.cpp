@@ -10,8 +10,7 @@ namespace {
 constexpr glm::ivec2 kSize{96, 60};
 constexpr int kViewCount = 200;
 
-class TerrainCracksTest : public TerrainTest {
-  protected:
+struct TerrainCracksTest : TerrainTest {
     TerrainCracksTest() { makeTerrain(roughMap(257, 60.0F)); }
 
     /// From 8 to 80 m above the ground or beside the map, in any direction but upwards.

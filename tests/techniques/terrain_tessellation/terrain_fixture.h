@@ -56,8 +56,7 @@ inline std::vector<kit::View> terrainViews() {
             viewAt({10, 50, 10}, {250, 30, 240}), viewAt({128, 300, 128}, {129, 0, 127})};
 }
 
-class TerrainTest : public test::GlTest {
-  protected:
+struct TerrainTest : test::GlTest {
     /// Blocks of 8, patches of 16 and tiles of 64 samples at level 0.
     void makeTerrain(scene::HeightMap heights) {
         map = std::move(heights);

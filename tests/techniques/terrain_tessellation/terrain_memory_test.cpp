@@ -18,8 +18,7 @@ namespace {
 constexpr int kSide = 8190;  // the rim is on no coarser grid
 constexpr long long kMapBytes = 4LL * kSide * kSide;
 
-class TerrainMemoryTest : public test::TechniqueTest {
-  protected:
+struct TerrainMemoryTest : test::TechniqueTest {
     TerrainMemoryTest() : TechniqueTest(kTerrainTessellation, {160, 100}) {}
 
     void SetUp() override {

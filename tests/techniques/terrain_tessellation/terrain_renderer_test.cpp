@@ -55,8 +55,7 @@ TEST_F(TerrainTest, HeightsAtSamplesAreTheMaps) {
 }
 
 /// Flat ground of `side`² samples a metre apart, drawn, against the rectangle that it is.
-class FlatTerrainTest : public TerrainTest {
-  protected:
+struct FlatTerrainTest : TerrainTest {
     template <class Draw>
     void expectThePlane(int side, const Draw& draw) {
         const float last = static_cast<float>(side - 1);

@@ -29,8 +29,7 @@ scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
     return scene;
 }
 
-class TerrainTessellationTest : public test::TechniqueTest {
-  protected:
+struct TerrainTessellationTest : test::TechniqueTest {
     TerrainTessellationTest() : TechniqueTest(kTerrainTessellation, {96, 64}) {}
 
     std::map<std::string, double> measured(const std::string& yaml, const scene::Scene& scene) {

@@ -42,8 +42,7 @@ std::size_t countVoxels(const DenseGrid& grid) {
     return count;
 }
 
-class GridShapeTest : public VoxelizerTest {
-  protected:
+struct GridShapeTest : VoxelizerTest {
     DenseGrid gridOf(const scene::Mesh& mesh, const MeshVoxelizerSettings& s) {
         const DenseGrid grid = voxelize(mesh, s, placeOf(s.grid.layout.shape())).grid;
         EXPECT_EQ(grid.countFull(), countVoxels(grid));

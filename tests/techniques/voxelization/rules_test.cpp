@@ -41,8 +41,7 @@ std::vector<NamedMesh> allMeshes() {
     return meshes;
 }
 
-class RulesTest : public VoxelizerTest {
-  protected:
+struct RulesTest : VoxelizerTest {
     /// By the CPU.
     static DenseGrid exact(Rule rule, const LatticeMesh& mesh, int n) {
         return rule == Rule::Thin ? reference::thin(mesh, n) : reference::conservative(mesh, n);

@@ -27,8 +27,7 @@ glm::dvec3 centreOf(const VoxelGrid& grid, const glm::ivec3& voxel) {
 constexpr glm::ivec3 kFaceNeighbours[] = {{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
                                           {0, -1, 0}, {0, 0, 1},  {0, 0, -1}};
 
-class SurfaceTest : public GlTest {
-  protected:
+struct SurfaceTest : GlTest {
     template <class Source>
     Source sourceOf(const std::string& yaml, const GridSettings& settings,
                     const std::optional<scene::Box>& box) {

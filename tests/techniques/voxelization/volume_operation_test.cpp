@@ -30,8 +30,7 @@ DenseGrid randomGrid(const WorksheetLayout& layout, std::uint64_t seed) {
     return grid;
 }
 
-class VolumeOperation : public GlTest, public testing::WithParamInterface<int> {
-  protected:
+struct VolumeOperation : GlTest, testing::WithParamInterface<int> {
     DenseGrid combined(const DenseGrid& left, const DenseGrid& right, CsgOperation operation) {
         const gl::Texture a = uploaded(left);
         const gl::Texture b = uploaded(right);

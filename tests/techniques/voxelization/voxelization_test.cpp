@@ -9,8 +9,7 @@
 namespace gfxrepro::voxelization {
 namespace {
 
-class VoxelizationTest : public VoxelizerTest {
-  protected:
+struct VoxelizationTest : VoxelizerTest {
     std::map<std::string, double> run(const std::string& yaml, const scene::Scene& scene) {
         Params params = test::paramsOf(kVoxelization, yaml);
         const auto technique = kVoxelization.create(params);

@@ -120,8 +120,7 @@ struct Voxelized {
     std::map<std::string, double> metrics;
 };
 
-class VoxelizerTest : public GlTest {
-  protected:
+struct VoxelizerTest : GlTest {
     static MeshVoxelizerSettings settings(const GridShape& shape, Rule rule, int voxelBits = 1) {
         MeshVoxelizerSettings result;
         result.grid.layout = WorksheetLayout(shape, voxelBits);

@@ -12,8 +12,7 @@ inline constexpr const char* kTiming =
     "measure: {lane: timing, repeats: 10, processes: 3}\n"
     "profiles: {quick: {measure: {repeats: 2, processes: 1}}}\n";
 
-class ExperimentTest : public testing::Test {
-  protected:
+struct ExperimentTest : testing::Test {
     void SetUp() override { folder.write("presets/timing.yaml", kTiming); }
 
     Experiment load(const std::string& text, const ExperimentOptions& options = {}) const {

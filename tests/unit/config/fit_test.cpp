@@ -6,8 +6,7 @@
 namespace gfxrepro::config {
 namespace {
 
-class FitTest : public ExperimentTest {
-  protected:
+struct FitTest : ExperimentTest {
     void SetUp() override { writeTable("70"); }
 
     /// A table of two methods; `conventional` is the one printed number that a fit may see.

@@ -5,8 +5,7 @@
 namespace gfxrepro::config {
 namespace {
 
-class PlotTest : public ExperimentTest {
-  protected:
+struct PlotTest : ExperimentTest {
     /// A file with row axes scene (text) and size (numbers), columns aa and bb, and these plots.
     static std::string body(const std::string& plots) {
         return "table: p/1\ntitle: t\ntechnique: x\n"

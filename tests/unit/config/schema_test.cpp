@@ -406,8 +406,7 @@ struct Embedding {
 };
 
 /// "no error", or the error with a value of no use at `key`.
-class BadValues : public ExperimentTest {
-  protected:
+struct BadValues : ExperimentTest {
     /// Whether the reader complains of the very line on which the value of no use stands.
     bool isNoticed(const Embedding& where, const std::string& key) const {
         std::string text = where.before + where.indent + key + ": [[nonsense]]\n";

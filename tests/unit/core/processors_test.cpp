@@ -10,8 +10,7 @@ namespace gfxrepro::test {
 namespace {
 
 /// As a process whose group below /sys/fs/cgroup is jobs/12 sees it, allowed on all processors.
-class UsableProcessors : public ::testing::Test {
-  protected:
+struct UsableProcessors : ::testing::Test {
     UsableProcessors() { folder.write("proc/self/cgroup", "0::/jobs/12\n"); }
     void limit(const std::string& group, const std::string& max) const {
         folder.write("sys/fs/cgroup/" + group + "cpu.max", max);

@@ -137,8 +137,7 @@ TEST(ColourProfiles, AreComparedByTheirPrimariesAndCurves) {
     EXPECT_FALSE(isSrgb(profileWith({{"A2B0", "mft2"}, {"kTRC", kSrgbCurve}}))) << "a table";
 }
 
-class ColoursOfFiles : public testing::Test {
-  protected:
+struct ColoursOfFiles : testing::Test {
     using Chunks = std::vector<std::pair<std::string, std::string>>;
 
     /// One row of these values, with chunks before its palette.

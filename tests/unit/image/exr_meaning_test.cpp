@@ -22,8 +22,7 @@
 namespace gfxrepro::image {
 namespace {
 
-class ExrMeaning : public testing::Test {
-  protected:
+struct ExrMeaning : testing::Test {
     /// Pixels of the columns and rows of `data`: red is their column, green their row.
     fs::path write(const char* name, const Rectangle& data, const Rectangle& display) const {
         ImageF colour(data.width, data.height, 3);

@@ -23,8 +23,7 @@
 namespace gfxrepro::image {
 namespace {
 
-class Formats : public testing::Test {
-  protected:
+struct Formats : testing::Test {
     static constexpr int kWidth = 11, kHeight = 5;
 
     /// Of every pixel and channel another one.

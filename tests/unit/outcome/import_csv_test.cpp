@@ -7,8 +7,7 @@
 namespace gfxrepro::outcome {
 namespace {
 
-class ImportCsv : public testing::Test {
-  protected:
+struct ImportCsv : testing::Test {
     ImportedNumbers read(const std::string& text) const {
         return readImport({folder_.write("a.csv", text)});
     }

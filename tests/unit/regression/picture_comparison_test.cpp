@@ -18,8 +18,7 @@ namespace {
 using image::ImageF;
 
 /// Two runs of one case, and where their comparison goes.
-class Pictures : public ::testing::Test {
-  protected:
+struct Pictures : ::testing::Test {
     /// Records a picture in the run `side`; `params` as its plan says them.
     void record(const std::string& side, const std::string& name, const ImageF& picture,
                 const std::string& params = "{}", int frame = 0) {

@@ -9,8 +9,7 @@
 namespace gfxrepro::run {
 namespace {
 
-class Still : public technique::Technique {
-  public:
+struct Still : technique::Technique {
     explicit Still(Params& params) {
         const double bias = params.getDouble("bias", 0.5, {"taken from the depth", "texels", 0, 1});
         const bool isStatic = params.getBool("static", false, {"drawn once"});

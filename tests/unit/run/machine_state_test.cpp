@@ -190,8 +190,7 @@ TEST(MachineState, IsTheSameReadFromWhatItWrote) {
 }
 
 /// Told of units as a scheduler does.
-class Told : public run::Observer {
-  public:
+struct Told : run::Observer {
     int began = 0, ended = 0;
     void unitBegan(const run::Unit&) override { ++began; }
     void unitEnded(const run::Unit&, records::Status, const std::string&) override { ++ended; }
@@ -199,8 +198,7 @@ class Told : public run::Observer {
 };
 
 /// A watch in a run folder of its own, over a machine and perhaps a GPU.
-class MachineWatch : public testing::Test {
-  protected:
+struct MachineWatch : testing::Test {
     TemporaryFolder runs_;
     run::RunDirectory directory = run::RunDirectory::create(runs_.path() / "run");
     Machine machine;

@@ -96,8 +96,7 @@ config::Outputs withTruthOf(const char* picture) {
 }
 
 /// A case whose picture `result` has a truth.
-class Recorded : public FolderTest {
-  protected:
+struct Recorded : FolderTest {
     std::map<std::string, double> errors() const {
         std::map<std::string, double> errors;
         for (const Sample& sample : result.samples) errors[sample.metric] = sample.value;

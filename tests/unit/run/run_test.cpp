@@ -14,8 +14,7 @@ constexpr const char* kA = "p/1 a 1";     // a case of the first table,
 constexpr const char* kTwin = "p/2 a 1";  // its twin in the second,
 constexpr const char* kB = "p/1 b 1";     // and another case
 
-class NotSurvived : public ::testing::Test {
-  protected:
+struct NotSurvived : ::testing::Test {
     NotSurvived() {
         plan.cases = {makeCase("p/1", "a", 1), makeCase("p/1", "b", 1), makeCase("p/2", "a", 1)};
     }

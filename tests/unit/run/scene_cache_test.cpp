@@ -63,8 +63,7 @@ scene::Scene furnished(Params& params, std::uint64_t seed) {
     return scene;
 }
 
-class KeptScenes : public ::testing::Test {
-  protected:
+struct KeptScenes : ::testing::Test {
     KeptScenes() {
         folder.write("s/m/x.yaml",
                      "scene: m/x\ndoc: an x\nsources: [{generator: furnished, seed: 5}]\n");

@@ -13,8 +13,7 @@ struct Result {
     std::size_t sizeBytes() const { return 100; }
 };
 
-class SharedResultsTest : public ::testing::Test {
-  protected:
+struct SharedResultsTest : ::testing::Test {
     void begin(const std::string& params, const std::string& work = "t scene 8 8 1 1") {
         shared.beginCase(work, parseYaml(params, "case.yaml"));
     }

@@ -19,8 +19,7 @@ namespace {
 using Lines = std::vector<std::string>;
 using Points = std::vector<glm::vec3>;
 
-class LoadClouds : public testing::Test {
-  protected:
+struct LoadClouds : testing::Test {
     Scene xyz(const std::string& text) { return loadScene(folder_.write("a.XYZ", text)); }
     Scene las(const std::string& bytes, const char* name = "a.las") {
         return loadScene(folder_.write(name, bytes));

@@ -10,8 +10,7 @@ namespace gfxrepro::scene {
 namespace {
 
 /// The square, and behind it numbers of a test's own: accessor 4 on, of floats.
-class PoseGltf : public testing::Test {
-  protected:
+struct PoseGltf : testing::Test {
     /// An accessor of type `type` with these numbers; returns its number.
     int add(const std::string& type, std::size_t count, const std::vector<float>& numbers) {
         const std::size_t at = bytes_.size();

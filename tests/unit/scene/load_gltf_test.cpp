@@ -10,8 +10,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-class LoadGltf : public testing::Test {
-  protected:
+struct LoadGltf : testing::Test {
     LoadGltf() { folder_.write("square.bin", squareBytes()); }
 
     Scene load(const Document& document) {

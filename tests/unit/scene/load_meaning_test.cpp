@@ -17,8 +17,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-class LoadMeaning : public testing::Test {
-  protected:
+struct LoadMeaning : testing::Test {
     LoadMeaning() { folder_.write("square.bin", squareBytes()); }
 
     std::string gltfError(const std::string& key, const std::string& value) {
@@ -288,8 +287,7 @@ TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
     EXPECT_EQ(saved.meshes.at(0).name, scene.meshes.at(0).name);
 }
 
-class PlyMeaning : public LoadMeaning {
-  protected:
+struct PlyMeaning : LoadMeaning {
     static std::string ply(const std::string& properties, const std::string& rows) {
         return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                "property float z\n" +

@@ -10,8 +10,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-class LoadObj : public testing::Test {
-  protected:
+struct LoadObj : testing::Test {
     Scene load(const std::string& content) { return loadObj(folder_.write("a.obj", content)); }
     std::string error(const std::string& content) {
         const auto path = folder_.write("a.obj", content);

@@ -15,8 +15,7 @@ namespace {
 using namespace std::string_literals;
 using Lines = std::vector<std::string>;
 
-class LoadOffStl : public testing::Test {
-  protected:
+struct LoadOffStl : testing::Test {
     Scene off(const std::string& text) { return loadScene(folder_.write("a.off", text)); }
     Scene stl(const std::string& text) { return loadScene(folder_.write("a.STL", text)); }
     template <class Load>

@@ -9,8 +9,7 @@
 namespace gfxrepro::scene {
 namespace {
 
-class LoadPly : public testing::Test {
-  protected:
+struct LoadPly : testing::Test {
     Scene load(const std::string& content) { return loadPly(folder_.write("a.ply", content)); }
     std::string error(const std::string& content) {
         const auto path = folder_.write("a.ply", content);
