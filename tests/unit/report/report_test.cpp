@@ -97,7 +97,13 @@ image::Image8 picture(std::uint8_t differing) {
     return result;
 }
 
-using Report = FolderTest;
+struct Report : FolderTest {
+    /// A report of one run, read back.
+    std::string pageOf(const ReportRun& run) const {
+        writeReport(folder.path() / "report.html", {&run, 1});
+        return readFile(folder.path() / "report.html");
+    }
+};
 
 TEST_F(Report, IsOneSafeFile) {
     ReportRun run = runIn(folder.path());
@@ -105,8 +111,7 @@ TEST_F(Report, IsOneSafeFile) {
     records::ImageWriter(folder.path())
         .append({{"case", "zju2005/9.9", 0, "surface", "images/a.png", "",
                   "zju2005/9.9 scene=<img onerror=x>"}});
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     for (const char* part : {
              "src=\"data:image/png;base64,iVBORw0KGgo",
              "alt=\"&lt;img, x&gt; · surface\"",
@@ -154,8 +159,7 @@ TEST_F(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
     run.claims[1].origin = config::ClaimSpec::Origin::Document;
     run.claims[1].verdict = claims::Verdict::Holds;
     run.claims[1].rows = "1 of 2 values of <scene>";
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr(">A, of the document; a time that counts of work decide; "
                                 "counted as zju2005/1 A</span>"));
     EXPECT_THAT(html, HasSubstr(">B, of the document; a time that counts of work decide; on 1 of 2 "
@@ -167,8 +171,7 @@ TEST_F(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
 TEST_F(Report, MarksWhatIsCalibrated) {
     ReportRun run = runIn(folder.path());
     const std::string legend = "‡ calibrated: an input of ours, at the value that its config gives";
-    writeReport(folder.path() / "report.html", {&run, 1});
-    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
+    EXPECT_THAT(pageOf(run), Not(HasSubstr(legend)));
     run.experiments[0] = tables::withPaperCases(tables::experimentFrom(R"(
 sweep: {scene: [models/duck, "<b>&|_%", models/lost]}
 layout:
@@ -178,8 +181,7 @@ printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duc
 )"),
                                                 {{"models/duck", "{}"}});
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"calibrated\">‡</abbr>"));
     EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
     EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">" + legend));
@@ -188,13 +190,11 @@ printed: {calibrated: [{scene: models/duck}], values: "scene,draw_ms\nmodels/duc
 TEST_F(Report, MarksTimesThatAreNotOfOneClock) {
     ReportRun run = runIn(folder.path());
     const std::string legend = "timed while the GPU&#39;s clock moved between 0.345 and 1.98 GHz";
-    writeReport(folder.path() / "report.html", {&run, 1});
-    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr(legend)));
+    EXPECT_THAT(pageOf(run), Not(HasSubstr(legend)));
     for (const std::string& caseId : run.tables[0].rows[0].cells[0].caseIds) {
         tables::markMovedClocks({{caseId, {0.345e9, 1.98e9}}}, run.tables[0]);
     }
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr(">8.0 <abbr title=\"" + legend + "\">§</abbr>"));
     EXPECT_THAT(html, Not(HasSubstr(">0.3 <abbr")));
     EXPECT_THAT(html, HasSubstr("<p class=\"soft small\">§ " + legend + ".</p>"));
@@ -206,8 +206,7 @@ TEST_F(Report, NoRatioAtOtherParameters) {
     const Node printed = run.experiments[0].paperCases[0].params;
     run.experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    std::string html = readFile(folder.path() / "report.html");
+    std::string html = pageOf(run);
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (the "
                                 "config&#39;s 16).</p>\n<div"));
@@ -220,10 +219,7 @@ TEST_F(Report, NoRatioAtOtherParameters) {
 
     run.experiments[0].paperCases[0].params = printed;
     judge(run, records());
-    const auto page = [&] {
-        writeReport(folder.path() / "report.html", {&run, 1});
-        return readFile(folder.path() / "report.html");
-    };
+    const auto page = [&] { return pageOf(run); };
     EXPECT_THAT(page(), HasSubstr("class=\"ratio\""));
     const auto forAllCells = [&](const auto& change) {
         for (tables::TableRow& row : run.tables[0].rows) std::ranges::for_each(row.cells, change);
@@ -238,8 +234,7 @@ TEST_F(Report, NoRatioAtOtherParameters) {
 
     run.experiments[0].paperCases.clear();  // of a plan of before they were kept
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    html = readFile(folder.path() / "report.html");
+    html = pageOf(run);
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Whether it was measured at the printed "
                                 "parameters is not known: the run&#39;s plan does not have "
@@ -248,8 +243,7 @@ TEST_F(Report, NoRatioAtOtherParameters) {
 
 TEST_F(Report, CellsNameTheirCases) {
     const ReportRun run = runIn(folder.path());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     const std::string anchor = "A-" + run.cases[0].id;
     EXPECT_THAT(html, HasSubstr("data-cases=\"" + anchor.substr(0, anchor.find('{'))));
     EXPECT_THAT(html, HasSubstr("<article class=\"case\" id=\"A-case:models/duck"));
@@ -263,8 +257,7 @@ TEST_F(Report, ImagesWithATruthGetAFlipMap) {
     records::ImageWriter(folder.path())
         .append({{"c", "zju2005/9.9", 0, "result", "images/x/result.png", "", "t"},
                  {"c", "zju2005/9.9", 0, "truth", "images/x/truth.png", "", "t", "result"}});
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("data-name=\"result\" data-truth=\"A-zju2005-9.9-1\""));
     EXPECT_THAT(html, HasSubstr("class=\"error\" data-of=\"A-zju2005-9.9-0\"><img src=\"data:"));
     EXPECT_THAT(html, ContainsRegex("FLIP 0\\.[0-9]+ to truth"));
@@ -293,8 +286,7 @@ TEST_F(Report, LargeGalleriesLieBesideThePage) {
         records::ImageWriter(folder.path())
             .append({{"case", "zju2005/9.9", 0, std::to_string(i), name, "", "t"}});
     }
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("<img src=\"thumbnails/a%20b%231.png\""));
     EXPECT_THAT(html, HasSubstr("data-full=\"images/a%20b%231.png\""));
     EXPECT_LT(html.size(), 150'000U);
@@ -375,8 +367,7 @@ layout:
     }
     judge(run, maker.records());
     records::ImageWriter(folder.path()).append(images);
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("<th scope=\"col\">truth</th><th scope=\"col\">coarse</th>"
                                 "<th scope=\"col\">fine</th></tr></thead>"));
     std::vector<std::string> order;
@@ -409,8 +400,7 @@ TEST_F(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     records::ImageWriter(folder.path()).append(images);
     const auto orderOf = [&](const std::vector<std::string>& shows) {
         run.experiments[0].shows = shows;
-        writeReport(folder.path() / "report.html", {&run, 1});
-        const std::string html = readFile(folder.path() / "report.html");
+        const std::string html = pageOf(run);
         std::map<std::size_t, std::string> order;
         for (const char* name : {"result", "truth", "classes_0", "reflection"}) {
             order[html.find(fmt::format("data-name=\"{}\"", tables::shownName(name)))] = name;
@@ -449,8 +439,7 @@ layout:
         }
     }
     judge(run, maker.records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     for (const char* part : {
              "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th>"
              "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
@@ -470,8 +459,7 @@ TEST_F(Report, LabelsAreReadForNames) {
         {"scene", "model"}, {"models/duck", "rubber duck"}, {"draw_ms", "time to draw"}};
     run.experiments[0].claims[0].boundFrom = config::ClaimSpec::BoundSource::Print;
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("title=\"scene\">model</th>"));
     EXPECT_THAT(html, HasSubstr("title=\"models/duck\">rubber duck"));
     EXPECT_THAT(html, HasSubstr(">time to draw <span"));
@@ -490,8 +478,7 @@ TEST_F(Report, APageBeginsWithItsVerdict) {
     run.experiments[0].claims[1].timeKind = config::ClaimSpec::TimeKind::Architectural;
     run.experiments[0].printed.remark = "misprinted";
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     std::size_t at = html.find("<section class=\"page\" id=\"zju2005-9.9\">");
     for (const char* part : {
              "<p class=\"verdict-line\">Of 2 statements of the document 1 holds <a class=\"mark "
@@ -522,8 +509,7 @@ TEST_F(Report, SaysHowNearADocumentsNumbersCome) {
     run.experiments[1].id = "zju2005/9.8";
     run.experiments[1].kind = config::ExperimentKind::Figure;
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     for (const char* part : {
              "How near: 1 printed number that is no time was measured at the parameters that the "
              "document gives: none lies within 10 % of the printed one, 1 within a factor of 2. Of "
@@ -543,8 +529,7 @@ TEST_F(Report, SaysHowNearADocumentsNumbersCome) {
 
     run.experiments[0].paperCases[0].params.set("light_grid", Node::number(16));
     judge(run, records());
-    writeReport(folder.path() / "report.html", {&run, 1});
-    EXPECT_THAT(readFile(folder.path() / "report.html"), Not(HasSubstr("How near")));
+    EXPECT_THAT(pageOf(run), Not(HasSubstr("How near")));
     writeNearness(folder.path(), run.experiments, run.tables);
     EXPECT_FALSE(fs::exists(folder.path() / "nearness.csv"));
 }
@@ -565,8 +550,7 @@ TEST_F(Report, OfAnOwnSweepTheStepsAreFolded) {
     for (records::Record& record : recorded) record.table = "sweep/s";
     for (config::Case& item : recorded.cases) item.experiment = "sweep/s";
     judge(run, recorded);
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     const std::size_t folded =
         html.find("<details class=\"steps\"><summary>Times of 1 step of a frame");
     ASSERT_NE(folded, html.npos);
@@ -646,9 +630,7 @@ TEST_F(Report, TheErrorBelowAPictureIsTheRecordedOne) {
     maker.beginCase("models/duck").add("flip", {0.1234}, "surface", "1");
     run.records.push_back(maker.records().back());
     run.records.back().caseId = id;
-    writeReport(folder.path() / "report.html", {&run, 1});
-    EXPECT_THAT(readFile(folder.path() / "report.html"),
-                HasSubstr("<figcaption>error: FLIP 0.1234 to truth</figcaption>"));
+    EXPECT_THAT(pageOf(run), HasSubstr("<figcaption>error: FLIP 0.1234 to truth</figcaption>"));
 }
 
 TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
@@ -656,8 +638,7 @@ TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
     run.tables[0].notes = {"A is faster than B.", "C and B cannot be told apart."};
     run.tables[0].toldNotes = 1;
     run.tables[0].rows[0].cells[1].isWithinNoise = true;
-    writeReport(folder.path() / "report.html", {&run, 1});
-    const std::string html = readFile(folder.path() / "report.html");
+    const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("<p class=\"told\">A is faster than B.</p>"));
     EXPECT_LT(html.find("A is faster than B."), html.find("<table class=\"results\">"));
     EXPECT_THAT(html, HasSubstr("<summary>Remarks: 1</summary>\n<p><span class=\"soft\"></span>C "
