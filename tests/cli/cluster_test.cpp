@@ -157,9 +157,9 @@ TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     EXPECT_THAT(partial.out, HasSubstr("missing: shard 2/2\nmissing: sweep/mock number=2\n"
                                        "missing: sweep/mock number=4\nmerged 1 shard into " +
                                        merged + ": 2 of 4 measured, 0 failed, 2 missing\n"));
-    EXPECT_THAT(partial.out, HasSubstr("what is missing or failed is measured by: gfxrepro run "
-                                       "--resume " +
-                                       merged + "\n"));
+    EXPECT_THAT(partial.out,
+                HasSubstr("what is missing or failed is measured by: gfxrepro run --resume " +
+                          merged + "\n"));
     const ProcessResult rest = mockGfxrepro({"run", "--resume", merged});
     EXPECT_EQ(rest.out, "2 of 2 finished; records: " + merged + "/records.csv\n");
     ASSERT_EQ(mockGfxrepro({"table", merged}).exitCode, 0);
@@ -169,8 +169,7 @@ TEST_F(Shards, MergeNamesWhatIsMissingAndARunGoesOn) {
     // What was measured into it is not overwritten.
     EXPECT_EQ(endedWith(2, mockGfxrepro({"merge", "--out", merged, s1})).err,
               "gfxrepro: " + merged +
-                  ": holds a run that is no merge of these shards; give another "
-                  "folder\n");
+                  ": holds a run that is no merge of these shards; give another folder\n");
     EXPECT_EQ(rowsOf(merged, "number").size(), 4U);
 }
 
@@ -215,8 +214,9 @@ TEST_F(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     fs::remove(dir + "/records.csv");
     records::RecordWriter(dir + "/records.csv").append(two);
     const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", dir}));
-    EXPECT_THAT(resumed.err, HasSubstr("sweep/mock: begun on another machine; its times are "
-                                       "measured again on "));
+    EXPECT_THAT(
+        resumed.err,
+        HasSubstr("sweep/mock: begun on another machine; its times are measured again on "));
     EXPECT_EQ(resumed.out, "3 of 3 finished; records: " + dir + "/records.csv\n");
     EXPECT_EQ(rowsOf(dir, "number").size(), 3U);
     EXPECT_EQ(records::readRecords(dir + "/records-replaced.csv").size(), two.size());
@@ -235,9 +235,8 @@ TEST_F(Shards, ValuesOfSeveralMachinesAreMarked) {
     const auto hasNote = [](const std::string& run) {
         EXPECT_EQ(mockGfxrepro({"report", run}).exitCode, 0);
         for (const char* file : {"/tables/sweep-mock.md", "/report.html"}) {
-            EXPECT_THAT(readFile(run + file),
-                        HasSubstr("measured on several machines, the times of each table on one of "
-                                  "them: Another "));
+            EXPECT_THAT(readFile(run + file), HasSubstr("measured on several machines, the times "
+                                                        "of each table on one of them: Another "));
         }
     };
     const std::string merged = folder.path() / "merged";
@@ -283,10 +282,10 @@ TEST(Resume, WithConfigsBeginsOrGoesOn) {
 using Submit = FolderTest;
 
 TEST_F(Submit, CommandsMeasureAndMerge) {
-    const std::string config = writeMockConfig(
-        folder, std::string("sweep:\n  zip:\n    - {number: [1, 2, 3, 4, 5], behaviour: [ok, ok, "
-                            "throw, ok, ok]}\n") +
-                    kLayout);
+    const std::string config =
+        writeMockConfig(folder, std::string("sweep:\n  zip:\n    - {number: [1, 2, 3, 4, 5], "
+                                            "behaviour: [ok, ok, throw, ok, ok]}\n") +
+                                    kLayout);
     const std::string out = folder.path() / "it's out";  // a shell must not stumble
     const std::vector<std::string> command = {"submit", config,     "--device", "software", "--out",
                                               out,      "--engine", "commands", "--shards", "2"};
@@ -343,8 +342,7 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     folder.write("out/submitted-program/shaders/other.glsl", "");
     const ProcessResult other = endedWith(2, runProgram({"/bin/sh", "-c", lines[0]}));
     EXPECT_THAT(other.err,
-                HasSubstr(shard + ": cannot be measured: the program or a shader changed "
-                                  "(build "));
+                HasSubstr(shard + ": cannot be measured: the program or a shader changed (build "));
     EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
     EXPECT_THAT(
         mockGfxrepro(command).err,
@@ -430,11 +428,10 @@ TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
     EXPECT_EQ(rest.out, "2 of 2 finished; records: " + alone + "/records.csv\n");
     const ProcessResult merge =
         endedWith(2, mockGfxrepro({"merge", alone, "--out", folder.path() / "merged"}));
-    EXPECT_EQ(merge.err,
-              "gfxrepro: " + alone +
-                  ": the plan that it is a shard of is neither in it (whole-plan.json) nor two "
-                  "folders above it (submitted-plan.json): a shard of a submission is merged with "
-                  "the submission's folder\n");
+    EXPECT_EQ(merge.err, "gfxrepro: " + alone +
+                             ": the plan that it is a shard of is neither in it (whole-plan.json) "
+                             "nor two folders above it (submitted-plan.json): a shard of a "
+                             "submission is merged with the submission's folder\n");
     // With its submission it may lie anywhere, and what was not begun is missing.
     fs::rename(out, folder.path() / "moved");
     const ProcessResult moved = endedWith(4, mockGfxrepro({"merge", folder.path() / "moved"}));
@@ -515,8 +512,8 @@ TEST_F(Submit, ShardsInEachOthersFoldersAreMergedAndTheOutputsOfAnotherAreNot) {
     EXPECT_EQ(status().exitCode, 4);
     exchange("/manifest.json");
     const std::string problem =
-        "/manifest.json: is of the plan [0-9a-f]+, shard 1/2, and the "
-        "plan.json beside it is the plan [0-9a-f]+, shard 2/2\n";
+        "/manifest.json: is of the plan [0-9a-f]+, shard 1/2, and the plan.json beside it is the "
+        "plan [0-9a-f]+, shard 2/2\n";
     EXPECT_THAT(merge().err, ContainsRegex(problem));
     EXPECT_THAT(status().out, ContainsRegex("1/2 .*" + problem + "2/2 "));
     EXPECT_EQ(status().exitCode, 4);
@@ -691,8 +688,8 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                                         {fakeSlurm(folder, "echo 'invalid partition' >&2; exit 1\n",
                                                    "exit 1\n")}))
                     .err,
-                HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): "
-                          "invalid partition; nothing was queued\n"));
+                HasSubstr("gfxrepro: sbatch did not take the job (exit code 1): invalid partition; "
+                          "nothing was queued\n"));
     // Numbers may come with a cluster's name; the second job waits for the first.
     const std::string log = folder.path() / "log";
     const std::string path =
@@ -726,9 +723,8 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
                 HasSubstr("gfxrepro: OUT: the queue does not answer, so the merge may be queued; "
                           "look with squeue, and submit again with --force where nothing is\n"));
     // One that has forgotten the jobs answers. What is complete is left out.
-    for (const char* answer : {"",
-                               "echo 'slurm_load_jobs error: Invalid job id specified' >&2; "
-                               "exit 1\n"}) {
+    for (const char* answer :
+         {"", "echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1\n"}) {
         EXPECT_EQ(runProgram(command, {fakeSlurm(folder, "echo 42\n", answer)}).out,
                   "array 42 (shards 2), merge 42; gfxrepro submit --status " + out + "\n");
     }
@@ -757,8 +753,10 @@ TEST_F(Submit, WhatWasRefusedIsNotQueued) {
     const ProcessResult missing = endedWith(
         2, submitted(writeNumbers(folder, 2), "PATH=" + (folder.path() / "none").string()));
     EXPECT_THAT(missing.err, HasSubstr("sbatch did not take the job (exit code 127): "));
-    EXPECT_THAT(missing.err, HasSubstr("; where there is no Slurm, --engine commands prints "
-                                       "commands; nothing was queued\n"));
+    EXPECT_THAT(
+        missing.err,
+        HasSubstr(
+            "; where there is no Slurm, --engine commands prints commands; nothing was queued\n"));
     EXPECT_FALSE(fs::exists(out));
     // What is queued then is what the config says then; so it is where a submit was killed.
     folder.write("out/submitted-plan.json", "of another day");
@@ -780,15 +778,16 @@ TEST_F(Submit, ARefusedMergeAndAnAnswerWithoutANumber) {
         submitted(
             "a",
             "case \"$*\" in *afterany*) echo 'no such dependency' >&2; exit 1;; esac\necho 41\n"));
-    EXPECT_THAT(merge.err, HasSubstr("gfxrepro: the merge: sbatch did not take the job (exit code "
-                                     "1): no such dependency; array 41 is queued; submit again "
-                                     "when the shards are complete\n"));
+    EXPECT_THAT(
+        merge.err,
+        HasSubstr("gfxrepro: the merge: sbatch did not take the job (exit code 1): no such "
+                  "dependency; array 41 is queued; submit again when the shards are complete\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "a/submitted-plan.json")) << "the array measures it";
     EXPECT_THAT(endedWith(2, submitted("a", "echo 42\n")).err,
                 HasSubstr("/a: the queue does not answer, so shard 1 may be queued; "));
     EXPECT_THAT(endedWith(2, submitted("b", "echo 'Submitted batch job'\n")).err,
-                HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued "
-                          "is not known; squeue shows it: Submitted batch job\n"));
+                HasSubstr("gfxrepro: sbatch gave no number of a job, so what is queued is not "
+                          "known; squeue shows it: Submitted batch job\n"));
     EXPECT_TRUE(fs::exists(folder.path() / "b/submitted-plan.json"));
     EXPECT_THAT(endedWith(2, submitted("b", "echo 42\n")).err,
                 HasSubstr("/b: sbatch gave no number of a job, so shard 1 may be "));

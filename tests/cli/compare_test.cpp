@@ -95,10 +95,10 @@ TEST_F(Compare, ATableThatABuildLeavesOutIsAnErrorWithAName) {
     const std::string two = folder.write("two.yaml",
                                          "sweep_of: two\ntitle: T\ntechnique: mock\n"
                                          "measure: {lane: quality}\n");
-    const fs::path program = folder.write(
-        "fewer",
-        "#!/bin/sh\nfor a; do shift; case $a in */two.yaml) ;; *) set -- \"$@\" \"$a\";; "
-        "esac; done\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
+    const fs::path program =
+        folder.write("fewer",
+                     "#!/bin/sh\nfor a; do shift; case $a in */two.yaml) ;; *) set -- \"$@\" "
+                     "\"$a\";; esac; done\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
     fs::permissions(program, fs::perms::owner_all);
     EXPECT_THAT(endedWith(2, mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device",
                                            "software", "--out", folder.path() / "turns",
@@ -121,9 +121,8 @@ TEST_F(Compare, TimesThatAreVoidOnBothSidesAreNamed) {
         folder, "params: {behaviour: blank}\nmeasure: {lane: timing, processes: 1, repeats: 2}\n");
     const auto [a, b] = twoRuns(config, 4);
     const ProcessResult result = endedWith(0, mockGfxrepro({"compare", a, b, "--out", out}));
-    EXPECT_THAT(result.out,
-                HasSubstr("_time_ms: void on both sides: frame 0: the picture of repeat 0 is "
-                          "blank: all its pixels are the same\n"));
+    EXPECT_THAT(result.out, HasSubstr("_time_ms: void on both sides: frame 0: the picture of "
+                                      "repeat 0 is blank: all its pixels are the same\n"));
     EXPECT_THAT(result.out, HasSubstr("1 void on both sides; "));
 }
 
@@ -185,8 +184,7 @@ TEST_F(Compare, ADriverThatDoesNotAnswerIsNoDevice) {
                                       {"GFXREPRO_MOCK_DRIVER_HANGS=1", "GFXREPRO_START_LIMIT_S=1"}))
                   .err,
               "gfxrepro: " + program("old", 0) +
-                  ": exit code 3: gfxrepro: the driver did not open a device within 1 "
-                  "s\n\n");
+                  ": exit code 3: gfxrepro: the driver did not open a device within 1 s\n\n");
 }
 
 TEST_F(Compare, RefusesWhatIsNoPair) {

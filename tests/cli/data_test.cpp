@@ -13,9 +13,8 @@ constexpr const char* kLines =
     "scene: shapes/torus\n"
     "sweep: {number: [1, 2, 4], behaviour: [ok, throw]}\n"
     "measure: {lane: timing, processes: 6}\n"
-    "layout: {rows: number, columns: {out: {metric: number, where: {behaviour: ok}}, "
-    "ms: {metric: wall_time_ms, where: {behaviour: ok}}, "
-    "bad: {metric: number, where: {behaviour: throw}}}}\n"
+    "layout: {rows: number, columns: {out: {metric: number, where: {behaviour: ok}}, ms: {metric: "
+    "wall_time_ms, where: {behaviour: ok}}, bad: {metric: number, where: {behaviour: throw}}}}\n"
     "claims:\n"
     "  grows: {says: it grows, trend: out, over: number, direction: increasing}\n"
     "  small: {says: it is small, bound: out, at_most: 3, bound_from: ours}\n"
@@ -83,15 +82,16 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
     EXPECT_EQ(readFile(dir("theirs") + "/tables/sweep-theirs.csv").substr(0, 8), "samples,");
     EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.md"), HasSubstr(mark));
     EXPECT_THAT(readFile(dir("theirs") + "/tables/sweep-theirs.tex"),
-                HasSubstr("Note: imported: these numbers were measured "
-                          "elsewhere, on RTX 4090, "));
+                HasSubstr("Note: imported: these numbers were measured elsewhere, on RTX 4090, "));
     const std::string page = readFile(dir("theirs") + "/report.html");
     EXPECT_THAT(page, HasSubstr(mark));
     EXPECT_THAT(page, HasSubstr("gfxrepro import "));
     EXPECT_THAT(page, Not(HasSubstr("gfxrepro run ")));
     EXPECT_THAT(page, Not(HasSubstr("gfxrepro reproduce ")));
-    EXPECT_THAT(page, HasSubstr("<span class=\"badge ambiguous\">imported</span> measured "
-                                "elsewhere, on RTX 4090, "));
+    EXPECT_THAT(
+        page,
+        HasSubstr(
+            "<span class=\"badge ambiguous\">imported</span> measured elsewhere, on RTX 4090, "));
     const auto manifest = nlohmann::json::parse(readFile(dir("theirs") + "/manifest.json"));
     EXPECT_EQ(manifest["imported"]["file"], "theirs.csv");
     EXPECT_EQ(manifest["imported"]["rows"], 3);
@@ -109,21 +109,20 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
 }
 
 TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
-    const std::string config = folder_.write(
-        "theirs.yaml",
-        "sweep_of: theirs\ntitle: Another renderer\ntechnique: imported\n"
-        "sweep: {samples: [4, 16, 64]}\n"
-        "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
-        "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: samples, "
-        "at_least: -1.1, at_most: -0.9, bound_from: text}\n"
-        "plots: [{x: samples, y: mse, log: [x, y]}]\n");
+    const std::string config =
+        folder_.write("theirs.yaml",
+                      "sweep_of: theirs\ntitle: Another renderer\ntechnique: imported\n"
+                      "sweep: {samples: [4, 16, 64]}\n"
+                      "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
+                      "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: "
+                      "samples, at_least: -1.1, at_most: -0.9, bound_from: text}\n"
+                      "plots: [{x: samples, y: mse, log: [x, y]}]\n");
     EXPECT_EQ(mockGfxrepro({"check", config}).out,
               config + ": ok, sweep/theirs, 0 cases, 1 claim\n");
     EXPECT_THAT(
         refusal({"run", config, "--device", "software", "--out", dir("none")}),
-        EndsWith("gfxrepro: DIR/theirs.yaml:3:12: technique 'imported': its numbers are "
-                 "measured elsewhere; `gfxrepro import FILE.csv --config theirs.yaml` takes "
-                 "them\n"));
+        EndsWith("gfxrepro: DIR/theirs.yaml:3:12: technique 'imported': its numbers are measured "
+                 "elsewhere; `gfxrepro import FILE.csv --config theirs.yaml` takes them\n"));
     const std::string csv =
         folder_.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
     endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")}));
@@ -189,8 +188,7 @@ TEST_F(Data, WhatCheckRefusesIsNotImported) {
     EXPECT_EQ(refusals("printed: {values: \"samples,mse\\n4,0.5\"}\n"), "");
     EXPECT_THAT(
         refusals("printed: {values: \"samples,mse\\n8,0.5\"}\n"),
-        EndsWith(":6:19: printed: no profile measures the row '8,0.5'; allowed: samples 4 | "
-                 "16\n"));
+        EndsWith(":6:19: printed: no profile measures the row '8,0.5'; allowed: samples 4 | 16\n"));
     EXPECT_THAT(refusals("claims: {C: {says: so, bound: mse, at_most: 1, kind: absolute}}\n"),
                 EndsWith(": claim 'C' has a 'kind' and reads no time\n"));
 }
@@ -217,16 +215,18 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
     const std::string recorded = " was recorded; did you mean 'err'? (recorded: err, n, t_ms)\n";
     EXPECT_EQ(errorsOf("layout: {rows: m, columns: {e: {metric: errr}, n: {metric: n}}}\n"),
               "error: sweep/t: column 'e': no 'errr'" + recorded);
-    EXPECT_EQ(errorsOf("layout: {rows: {x: {metric: n}, y: {metric: errr}}, columns: "
-                       "{a: {where: {m: a}}}}\n"),
-              "error: sweep/t: row 'y': no 'errr'" + recorded);
+    EXPECT_EQ(
+        errorsOf(
+            "layout: {rows: {x: {metric: n}, y: {metric: errr}}, columns: {a: {where: {m: a}}}}\n"),
+        "error: sweep/t: row 'y': no 'errr'" + recorded);
     for (const char* metric : {"err", "t_ms"}) {
-        EXPECT_EQ(errorsOf(fmt::format("layout: {{rows: m, columns: {{e: {{metric: {}, pass: q}}, "
-                                       "n: {{metric: n}}}}}}\n",
-                                       metric)),
-                  fmt::format("error: sweep/t: column 'e': no '{}' of pass 'q' was recorded; it is "
-                              "there for pass: p\n",
-                              metric));
+        EXPECT_EQ(
+            errorsOf(fmt::format(
+                "layout: {{rows: m, columns: {{e: {{metric: {}, pass: q}}, n: {{metric: n}}}}}}\n",
+                metric)),
+            fmt::format("error: sweep/t: column 'e': no '{}' of pass 'q' was recorded; it is there "
+                        "for pass: p\n",
+                        metric));
     }
     EXPECT_THAT(errorsOf("claims: {c: {says: so, bound: errr, at_most: 1}}\n"),
                 StartsWith("error: sweep/t: claim 'c': 'errr' is no column"));
@@ -251,10 +251,10 @@ TEST_F(Data, AnImportHasTheFramesOfItsFile) {
         folder_.write("t.csv", "m,frame,metric,value\na,0,e,1\nb,0,e,2\na,1,e,9\nb,1,e,2\n");
     const auto configOf = [&](const char* frame) {
         return folder_.write(
-            "t.yaml", std::string("sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: "
-                                  "[a, b]}\nlayout: {rows: m, columns: {e: {metric: e, "
-                                  "where: {frame: ") +
-                          frame + "}}}}\nclaims: {C: {says: so, order: [m=a, m=b], of: e}}\n");
+            "t.yaml",
+            std::string("sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\nlayout: "
+                        "{rows: m, columns: {e: {metric: e, where: {frame: ") +
+                frame + "}}}}\nclaims: {C: {says: so, order: [m=a, m=b], of: e}}\n");
     };
     for (const auto& [frame, verdict] : {std::pair("0", "C holds"), {"1", "C fails"}}) {
         const std::string config = configOf(frame);
@@ -278,9 +278,9 @@ TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
             folder_.write("t.csv", fmt::format("m,metric,value\na,err,1\na,{},2\n", metric));
         EXPECT_EQ(
             refusal({"import", csv, "--config", config, "--out", dir("t")}),
-            fmt::format("gfxrepro: DIR/t.csv:3: metric '{}' has the name of an axis; allowed: "
-                        "another\n",
-                        metric));
+            fmt::format(
+                "gfxrepro: DIR/t.csv:3: metric '{}' has the name of an axis; allowed: another\n",
+                metric));
         endedWith(0, mockGfxrepro({"import", csv, "--out", dir(metric)}));
     }
 }
@@ -363,15 +363,15 @@ TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
         "random numbers of its own\n";
     EXPECT_THAT(
         endedWith(2, import("}\nlayout: {rows: method, columns: {e: {metric: e}}}\n", trials)).err,
-        EndsWith("t.yaml:5:1: layout: each number would be taken over trial (0, 1), which "
-                 "is a column of the file; allowed: in 'sweep', and as an axis of rows or "
-                 "columns, or in a 'where': {trial: [0, 1]} takes its values together" +
+        EndsWith("t.yaml:5:1: layout: each number would be taken over trial (0, 1), which is a "
+                 "column of the file; allowed: in 'sweep', and as an axis of rows or columns, or "
+                 "in a 'where': {trial: [0, 1]} takes its values together" +
                  how));
     EXPECT_FALSE(fs::exists(dir("t")));
     EXPECT_THAT(
         endedWith(2, import("}\nclaims: {c: {says: so, order: [a, b], of: e}}\n", trials)).err,
-        EndsWith("t.yaml:5:1: claims: rows that are alike in 'sweep' differ by 'trial' (0, "
-                 "1), a column of the file; allowed: in 'sweep', as a parameter" +
+        EndsWith("t.yaml:5:1: claims: rows that are alike in 'sweep' differ by 'trial' (0, 1), a "
+                 "column of the file; allowed: in 'sweep', as a parameter" +
                  how));
     endedWith(0, import("}\nlayout: {rows: method, columns: {n: {metric: n}}}\n", others));
     endedWith(0, import("}\nclaims: {}\n", trials));
@@ -390,11 +390,10 @@ TEST_F(Data, APointOfASweepIsImportedOnce) {
         folder_, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
     const std::string csv =
         folder_.write("t.csv", "number,trial,metric,value\n1,0,number,5\n1,1,number,6\n");
-    EXPECT_EQ(
-        refusal({"import", csv, "--config", config, "--out", dir("t")}),
-        "gfxrepro: DIR/t.csv:3: differs from line 2 by 'trial', which the sweep of sweep/mock "
-        "does not have; allowed: one case at each point of it; what repeats a case has its "
-        "number in the column 'process'\n");
+    EXPECT_EQ(refusal({"import", csv, "--config", config, "--out", dir("t")}),
+              "gfxrepro: DIR/t.csv:3: differs from line 2 by 'trial', which the sweep of "
+              "sweep/mock does not have; allowed: one case at each point of it; what repeats a "
+              "case has its number in the column 'process'\n");
 }
 
 /// The same of a value that no case has.
@@ -457,37 +456,31 @@ TEST_F(Data, NothingIsMeasuredIntoAnImportedRun) {
 
 TEST_F(Data, BadImportsAreOneErrorEach) {
     const std::string csv = folder_.write("a.csv", "n,metric,value\n1,mse,fast\n");
-    EXPECT_EQ(
-        refusal({"import", csv, "--out", dir("a")}),
-        "gfxrepro: DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing in "
-        "a row whose status is not ok\n");
+    EXPECT_EQ(refusal({"import", csv, "--out", dir("a")}),
+              "gfxrepro: DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing "
+              "in a row whose status is not ok\n");
     EXPECT_FALSE(fs::exists(dir("a")));
     folder_.write("b.csv", "n,metric,value\n1,mse,+1e-400\n2,mse,1e400\n");
-    EXPECT_EQ(
-        refusal({"import", dir("b.csv"), "--out", dir("a")}),
-        "gfxrepro: DIR/b.csv:3: column 'value': '1e400'; allowed: a number, inf, or nothing in "
-        "a row whose status is not ok\n");
+    EXPECT_EQ(refusal({"import", dir("b.csv"), "--out", dir("a")}),
+              "gfxrepro: DIR/b.csv:3: column 'value': '1e400'; allowed: a number, inf, or nothing "
+              "in a row whose status is not ok\n");
     EXPECT_EQ(refusal({"import", csv, "--metric", "value", "--out", dir("a")}),
               "gfxrepro: --metric 'value'; allowed: COLUMN=UNIT, such as render_time_ms=ms; 1 is "
-              "the unit of "
-              "what has none\n");
-    const std::string config = writeMockConfig(folder_,
-                                               "layout: {rows: number, columns: {n: "
-                                               "{metric: number}}}\nsweep: {number: [1]}\n");
+              "the unit of what has none\n");
+    const std::string config = writeMockConfig(
+        folder_, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
     const std::string other =
         folder_.write("b.csv", "experiment,number,metric,value\nsweep/mine,1,number,5\n");
-    EXPECT_EQ(
-        refusal({"import", other, "--config", config, "--out", dir("a")}),
-        "gfxrepro: DIR/b.csv:2: column 'experiment': 'sweep/mine'; allowed, as of the configs "
-        "given: sweep/mock\n");
+    EXPECT_EQ(refusal({"import", other, "--config", config, "--out", dir("a")}),
+              "gfxrepro: DIR/b.csv:2: column 'experiment': 'sweep/mine'; allowed, as of the "
+              "configs given: sweep/mock\n");
     const std::string twice = folder_.write("c.csv", "n,metric,value\n1,mse,5\n1.0,mse,6\n");
     EXPECT_EQ(refusal({"import", twice, "--out", dir("a")}),
               "gfxrepro: DIR/c.csv:3: the same case as in line 2: sweep/c\n");
     const std::string time = folder_.write("e.csv", "n,time\n1,5\n");
-    EXPECT_EQ(
-        refusal({"import", time, "--metric", "time=s", "--out", dir("a")}),
-        "gfxrepro: DIR/e.csv:2: 'time' has the unit 's'; a time has a name that ends in _ms and "
-        "the unit ms, by which claims know it, and nothing else has\n");
+    EXPECT_EQ(refusal({"import", time, "--metric", "time=s", "--out", dir("a")}),
+              "gfxrepro: DIR/e.csv:2: 'time' has the unit 's'; a time has a name that ends in _ms "
+              "and the unit ms, by which claims know it, and nothing else has\n");
     const std::string output = folder_.write("f.csv", "output,metric,value\na,mse,5\nb,mse,6\n");
     EXPECT_EQ(
         refusal({"import", output, "--out", dir("a")}),

@@ -163,9 +163,9 @@ TEST_F(DeviceChoice, WhatTheGpuDidIsKeptWithItsTimes) {
                                   "PRETENDED_THROTTLE=0x24", "PRETENDED_USERS=1"}));
     EXPECT_EQ(gpuOf()["lowest_clock_hz"], 1.41e9);
     EXPECT_EQ(gpuOf()["throttled_by"], nlohmann::json({"heat", "its power limit"}));
-    EXPECT_THAT(run.err, HasSubstr("the GPU's clock moved between 1.41 and 1.98 GHz; the GPU's "
-                                   "clock was held down by heat and its power limit; 1 other "
-                                   "process used the GPU"));
+    EXPECT_THAT(run.err,
+                HasSubstr("the GPU's clock moved between 1.41 and 1.98 GHz; the GPU's clock was "
+                          "held down by heat and its power limit; 1 other process used the GPU"));
     // Each case that is not of one clock is marked where its times stand.
     const fs::path kept = folder.path() / ("run-" + std::to_string(count));
     ASSERT_EQ(mockGfxrepro({"table", kept}).exitCode, 0);

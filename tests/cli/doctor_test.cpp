@@ -80,10 +80,9 @@ TEST(Doctor, DriverNotLoaded) {
     facts.driverProblems = {"/a.json names the driver libEGL_a.so.0: no such file"};
     EXPECT_THAT(
         linesOf(facts),
-        StartsWith(
-            "results driver_not_loaded: A driver cannot be loaded: /a.json names the driver "
-            "libEGL_a.so.0: no such file. → Install what it lacks, or the driver anew; where "
-            "there is no such device, its file may go.\nresults software_only: "));
+        StartsWith("results driver_not_loaded: A driver cannot be loaded: /a.json names the driver "
+                   "libEGL_a.so.0: no such file. → Install what it lacks, or the driver anew; "
+                   "where there is no such device, its file may go.\nresults software_only: "));
     facts.devices.clear();
     EXPECT_EQ(linesOf(facts).substr(0, 24), "fatal driver_not_loaded:");
 }
@@ -164,11 +163,11 @@ TEST(Doctor, AGpuThatDoesNotServe) {
     MachineFacts facts = goodMachine();
     facts.devices[0].isSoftware = true;
     facts.unusedGpus = {"/dev/nvidia0: Permission denied"};
-    EXPECT_EQ(linesOf(facts),
-              "results gpu_does_not_serve: There is a GPU that cannot be used: /dev/nvidia0: "
-              "Permission denied. → Install its driver with EGL (in a container, let in its "
-              "graphics part), and let this user open its file. --device software measures "
-              "without it.\n");
+    EXPECT_EQ(
+        linesOf(facts),
+        "results gpu_does_not_serve: There is a GPU that cannot be used: /dev/nvidia0: Permission "
+        "denied. → Install its driver with EGL (in a container, let in its graphics part), and let "
+        "this user open its file. --device software measures without it.\n");
 }
 
 TEST(Doctor, CoarseTimer) {
@@ -184,21 +183,20 @@ TEST(Doctor, NoTimer) {
     MachineFacts facts = goodMachine();
     facts.devices[0].timer = {0};
     EXPECT_EQ(linesOf(facts),
-              "times no_timer: Device 0: it has no clock for GPU times, or one that does not go "
-              "as the processor's, so passes have none. → Compare times of the whole frame "
-              "(wall_time_ms), "
-              "update its driver, or take another device.\n");
+              "times no_timer: Device 0: it has no clock for GPU times, or one that does not go as "
+              "the processor's, so passes have none. → Compare times of the whole frame "
+              "(wall_time_ms), update its driver, or take another device.\n");
 }
 
 TEST(Doctor, SmallLimits) {
     MachineFacts facts = goodMachine();
     facts.devices[0].max3dTextureSizePx = 256;
     facts.devices[0].maxStorageBlockBytes = 1 << 20;
-    EXPECT_EQ(linesOf(facts),
-              "results small_limits: Device 0 has smaller limits than OpenGL 4.5 promises (3D "
-              "textures of 256, storage blocks of 1048576): the largest cases will be marked "
-              "unsupported. → Measure those on another device; --set and --sweep make them "
-              "smaller.\n");
+    EXPECT_EQ(
+        linesOf(facts),
+        "results small_limits: Device 0 has smaller limits than OpenGL 4.5 promises (3D textures "
+        "of 256, storage blocks of 1048576): the largest cases will be marked unsupported. → "
+        "Measure those on another device; --set and --sweep make them smaller.\n");
 }
 
 TEST(Doctor, Assets) {
@@ -207,8 +205,8 @@ TEST(Doctor, Assets) {
     facts.standInCount = 3;
     EXPECT_EQ(linesOf(facts),
               "results no_assets: The folder of real models, /models, is not there: stand-ins are "
-              "measured, and marked. → Run scripts/fetch-assets, or name a folder with --assets "
-              "or GFXREPRO_ASSETS.\n");
+              "measured, and marked. → Run scripts/fetch-assets, or name a folder with --assets or "
+              "GFXREPRO_ASSETS.\n");
     facts.hasAssets = true;
     EXPECT_EQ(linesOf(facts),
               "results stand_ins: The real models of 3 scenes are not in /models: stand-ins are "
@@ -227,12 +225,12 @@ TEST(Doctor, Disk) {
     facts.freeDiskBytes = 0.25 * 1024 * 1024 * 1024;
     facts.isRunsWritable = false;
     facts.runsFolder = "/usr/runs";
-    EXPECT_EQ(linesOf(facts),
-              "results runs_not_writable: /usr/runs cannot be written: no run can be kept there. → "
-              "Go to a folder of your own, or name one with --out.\n"
-              "results little_disk: Only 0.25 GiB of disk are free here; a run of a whole paper "
-              "writes up to 1 GiB of images. → Free some, or name a folder on another disk with "
-              "--out.\n");
+    EXPECT_EQ(
+        linesOf(facts),
+        "results runs_not_writable: /usr/runs cannot be written: no run can be kept there. → Go to "
+        "a folder of your own, or name one with --out.\n"
+        "results little_disk: Only 0.25 GiB of disk are free here; a run of a whole paper writes "
+        "up to 1 GiB of images. → Free some, or name a folder on another disk with --out.\n");
 }
 
 TEST(Doctor, Processor) {

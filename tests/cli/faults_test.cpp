@@ -13,19 +13,19 @@ using Faults = test::RunTest;
 TEST_F(Faults, EveryFailureBecomesARow) {
     const std::string config = writeMockConfig(
         folder,
-        "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost,"
-        " not_a_number]\nmeasure: {lane: quality, time_limit_s: 2}\n");
+        "sweep:\n  behaviour: [ok, crash, exit, hang, throw, bad_alloc, unsupported, device_lost, "
+        "not_a_number]\nmeasure: {lane: quality, time_limit_s: 2}\n");
     EXPECT_EQ(endedWith(4, mockGfxrepro({"run", config, "--jobs", "1", "--out", dir})).out,
               "1 of 9 finished, 8 failed; records: " + dir + "/records.csv\n");
-    EXPECT_THAT(statusLines(dir),
-                ElementsAre("ok: ok", "crash: crash (SIGSEGV: about to crash)",
-                            "exit: crash (the worker ended with exit code 7: leaving)",
-                            "hang: timeout (not finished after 2 s (in render))",
-                            "throw: error (nothing works)", "bad_alloc: oom (out of memory)",
-                            "unsupported: unsupported (no such extension)",
-                            "device_lost: device-lost (the device was reset)",
-                            "not_a_number: error (metric 'number' is nan; a metric is a finite "
-                            "number, or ∞ dB)"));
+    EXPECT_THAT(
+        statusLines(dir),
+        ElementsAre(
+            "ok: ok", "crash: crash (SIGSEGV: about to crash)",
+            "exit: crash (the worker ended with exit code 7: leaving)",
+            "hang: timeout (not finished after 2 s (in render))", "throw: error (nothing works)",
+            "bad_alloc: oom (out of memory)", "unsupported: unsupported (no such extension)",
+            "device_lost: device-lost (the device was reset)",
+            "not_a_number: error (metric 'number' is nan; a metric is a finite number, or ∞ dB)"));
 }
 
 /// 'a-b/c' and 'a/b-c' both have the files a-b-c.csv, .md and .tex, and that place in a page.
@@ -41,8 +41,8 @@ TEST_F(Faults, TablesOfOneFileNameAreNoRunTogether) {
     const std::string first = write("first.yaml", "a-b/c"), second = write("second.yaml", "a/b-c");
     EXPECT_EQ(endedWith(2, mockGfxrepro({"plan", first, second})).err,
               "gfxrepro: " + second +
-                  ": the experiment 'a/b-c' and 'a-b/c' would write the same files, "
-                  "'a-b-c'; allowed: one of them in a run\n");
+                  ": the experiment 'a/b-c' and 'a-b/c' would write the same files, 'a-b-c'; "
+                  "allowed: one of them in a run\n");
     const std::string a = folder.path() / "a", b = folder.path() / "b",
                       page = folder.path() / "p.html";
     for (const auto& [config, dir] : {std::pair(first, a), std::pair(second, b)}) {
@@ -63,10 +63,10 @@ TEST_F(Faults, WhatPassesAtTheSecondTryIsFlaky) {
     const ProcessResult run =
         endedWith(0, mockGfxrepro({"run", config, "--jobs", "1", "--out", dir}));
     EXPECT_EQ(run.out, "2 of 2 finished, 1 flaky; records: " + dir + "/records.csv\n");
-    EXPECT_THAT(statusLines(dir),
-                ElementsAre("flake: flaky (passed at the second try; the first: crash: SIGSEGV: "
-                            "flaking)",
-                            "flake: ok"));
+    EXPECT_THAT(
+        statusLines(dir),
+        ElementsAre("flake: flaky (passed at the second try; the first: crash: SIGSEGV: flaking)",
+                    "flake: ok"));
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
     EXPECT_THAT(readFile(dir + "/tables/sweep-mock.md"), HasSubstr("| 1 | 1 (flaky) |"));
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
@@ -111,8 +111,8 @@ TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
     for (const char* command : {"table", "report", "export"}) {
         EXPECT_EQ(mockGfxrepro({command, dir}).err,
                   "gfxrepro: " + dir +
-                      "/plan.json: the plan has 2147483648 measurements (cases × "
-                      "processes); at most 1000000 are allowed\n");
+                      "/plan.json: the plan has 2147483648 measurements (cases × processes); at "
+                      "most 1000000 are allowed\n");
     }
 }
 
@@ -127,9 +127,10 @@ TEST_F(Faults, CheckTellsOfARunWithVeryManyRows) {
         rows(many + "1000}\n"),
         AllOf(HasSubstr("about 3.5 million rows of records, of at most 64 million in a run\n"),
               HasSubstr("`table`, `report` and the like take 1.2 GB of memory for them")));
-    EXPECT_THAT(rows(many + "100000}\n"),
-                HasSubstr("in a run: it will stop before its end; measure it in parts (--only, "
-                          "--shard)\n"));
+    EXPECT_THAT(
+        rows(many + "100000}\n"),
+        HasSubstr(
+            "in a run: it will stop before its end; measure it in parts (--only, --shard)\n"));
 }
 
 /// Of each pass, of its pictures, and of all files of a run together.
@@ -339,10 +340,9 @@ TEST(Titles, AreRefusedBeforeTheyAreMeasured) {
     const TemporaryFolder folder;
     const fs::path config = writeMockConfig(
         folder, "sweep: {number: [1, 2], marker: [x, " + std::string(1'100'000, 'y') + "]}\n");
-    const std::string why =
-        "gfxrepro: " + config.string() +
-        ":5:37: a value of axis 'marker' has 1100000 bytes, its case's title 1100027; at most 4096 "
-        "are allowed\n";
+    const std::string why = "gfxrepro: " + config.string() +
+                            ":5:37: a value of axis 'marker' has 1100000 bytes, its case's title "
+                            "1100027; at most 4096 are allowed\n";
     EXPECT_EQ(mockGfxrepro({"check", config}).err, why);
     const std::string dir = folder.path() / "run";
     EXPECT_THAT(endedWith(2, mockGfxrepro({"run", config, "--out", dir})).err,
@@ -367,13 +367,13 @@ TEST_F(Overrides, WhatTheyTakeFromClaimsIsUnmeasuredAndSaidBefore) {
     };
     EXPECT_EQ(mockGfxrepro({"check", config}).out,
               config + ": ok, sweep/mock, 4 cases, 2 claims\n");
-    EXPECT_EQ(checked("marker=x"),
-              config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
-                  ": claim 'order' will be unmeasured: 'y' is no column; did you mean 'x'? "
-                  "(columns: x)\n");
-    EXPECT_EQ(checked("number=1"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
-                                       ": claim 'two' will be unmeasured: no row is of {number: "
-                                       "2}; there are: {number: 1}\n");
+    EXPECT_EQ(checked("marker=x"), config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
+                                       ": claim 'order' will be unmeasured: 'y' is no column; did "
+                                       "you mean 'x'? (columns: x)\n");
+    EXPECT_EQ(
+        checked("number=1"),
+        config + ": ok, sweep/mock, 2 cases, 2 claims\n" + config +
+            ": claim 'two' will be unmeasured: no row is of {number: 2}; there are: {number: 1}\n");
     endedWith(0,
               mockGfxrepro({"reproduce", config, "--sweep", "marker=x", "--quiet", "--out", dir}));
     EXPECT_THAT(readFile(dir + "/claims.csv"),
@@ -486,10 +486,10 @@ TEST_F(Faults, NamesOfThreeHundredLettersAreNoReasonToLoseACase) {
     EXPECT_EQ(count, 6U);  // an EXR and a PNG of the named, of "flat" and of its truth
     const std::string named =
         folder.write("long.yaml", "sweep_of: " + name + "\ntitle: t\ntechnique: mock\n");
-    EXPECT_EQ(endedWith(2, mockGfxrepro({"check", named})).err,
-              "gfxrepro: " + named +
-                  ":1:11: sweep_of: a name of 300 letters; at most 80, for files are "
-                  "named after it\n");
+    EXPECT_EQ(
+        endedWith(2, mockGfxrepro({"check", named})).err,
+        "gfxrepro: " + named +
+            ":1:11: sweep_of: a name of 300 letters; at most 80, for files are named after it\n");
 }
 
 TEST_F(Faults, WhatAConfigMayNameARunMayReadAgain) {

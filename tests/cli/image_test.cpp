@@ -172,13 +172,12 @@ TEST_F(ImageCommands, DiffOfSmallImagesHasNoSimilarity) {
 
 TEST_F(ImageCommands, DiffRefuses) {
     const std::string exr = write("a.exr", gbuffer(1.0F)), png = write("b.png", Image8(4, 4, 3));
+    EXPECT_EQ(withoutLayers(refusal({"image", "diff", exr, png})),
+              "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds: one is "
+              "linear, as EXR files are, the other sRGB, as PNG files are\n");
     EXPECT_EQ(
-        withoutLayers(refusal({"image", "diff", exr, png})),
-        "gfxrepro: image diff: DIR/a.exr and DIR/b.png are of different kinds: one is linear, "
-        "as EXR files are, the other sRGB, as PNG files are\n");
-    EXPECT_EQ(refusal({"image", "diff", png, write("c.png", Image8(5, 4, 3))}),
-              "gfxrepro: the images differ in shape: 4x4 with 3 channels and 5x4 with 3 "
-              "channels\n");
+        refusal({"image", "diff", png, write("c.png", Image8(5, 4, 3))}),
+        "gfxrepro: the images differ in shape: 4x4 with 3 channels and 5x4 with 3 channels\n");
     EXPECT_EQ(refusal({"image", "diff", png, png, "--out", at("x.jpg")}),
               "gfxrepro: DIR/x.jpg: is neither .exr nor .png\n");
 }

@@ -38,12 +38,12 @@ std::string withoutMark(std::string text) {
 
 TEST(Judging, TheRunsOwnConfigGivenAgainJudgesAlike) {
     const TemporaryFolder folder;
-    const std::string config = writeMockConfig(
-        folder,
-        "sweep: {number: [1, 2]}\n"
-        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
-        "claims:\n  small: {says: it is small, bound: n, at_most: 1, because: {verdict: fails, "
-        "reason: two is more}}\n");
+    const std::string config =
+        writeMockConfig(folder,
+                        "sweep: {number: [1, 2]}\n"
+                        "layout:\n  rows: number\n  columns: {n: {metric: number}}\n"
+                        "claims:\n  small: {says: it is small, bound: n, at_most: 1, because: "
+                        "{verdict: fails, reason: two is more}}\n");
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(mockGfxrepro({"reproduce", config, "--only", "number=1", "--out", dir}).exitCode, 0);
     auto manifest = nlohmann::ordered_json::parse(readFile(dir + "/manifest.json"));

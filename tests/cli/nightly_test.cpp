@@ -25,12 +25,10 @@ struct Nightly : ::testing::Test {
         const std::string name = "bundle-" + std::to_string(extraUs);
         fs::create_directories(folder.path() / name);
         const fs::path program = folder.write(
-            name + "/gfxrepro", "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraUs) +
-                                    "e-3 GFXREPRO_MOCK_SHADE=" + shade + " exec " +
-                                    GFXREPRO_MOCK_PROGRAM + " \"$@\"" +
-                                    (isCrashing ? "$([ $1 != run ] || echo ' --set "
-                                                  "behaviour=crash')\n"
-                                                : "\n"));
+            name + "/gfxrepro",
+            "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraUs) +
+                "e-3 GFXREPRO_MOCK_SHADE=" + shade + " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"" +
+                (isCrashing ? "$([ $1 != run ] || echo ' --set behaviour=crash')\n" : "\n"));
         fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
@@ -261,9 +259,8 @@ TEST_F(Nightly, ABuildThatCrashesIsNotAcceptedAndASoundOneLandsAfterIt) {
     ASSERT_EQ(night(0).exitCode, 0);
     isCrashing = true;
     const ProcessResult refused = endedWith(1, night(1, false, "it is right"));
-    EXPECT_THAT(refused.err,
-                HasSubstr("nightly: not accepted: what the last build measured is lost, or a "
-                          "case did not finish\n"));
+    EXPECT_THAT(refused.err, HasSubstr("nightly: not accepted: what the last build measured is "
+                                       "lost, or a case did not finish\n"));
     EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
     EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
     EXPECT_EQ(night(1, true).exitCode, 4) << "nor does --fix";

@@ -163,9 +163,9 @@ TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
     folder.write("runs/20260105-e/plan.json", "{}");
     const std::string others = inFolder("list runs").out;
     EXPECT_THAT(others,
-                HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: is nested deeper "
-                          "than 200 levels\nruns/20260104-d  runs/20260104-d/manifest.json: "
-                          "a link, a pipe or a device, which a run folder does not hold\n"
+                HasSubstr("runs/20260103-c  runs/20260103-c/manifest.json: is nested deeper than "
+                          "200 levels\nruns/20260104-d  runs/20260104-d/manifest.json: a link, a "
+                          "pipe or a device, which a run folder does not hold\n"
                           "runs/20260105-e  not begun\n"));
 }
 
@@ -183,8 +183,7 @@ TEST_F(OwnExperiment, CheckFindsWhatARunWouldFailBy) {
     EXPECT_EQ(
         checked(folder, voxels),
         "gfxrepro: DIR/mine.yaml:3:12: technique 'voxelization' needs a scene: `scene:` with a "
-        "name of `gfxrepro list scenes`, or a model (.glb, .gltf, .obj, .ply) beside this "
-        "file\n");
+        "name of `gfxrepro list scenes`, or a model (.glb, .gltf, .obj, .ply) beside this file\n");
     EXPECT_THAT(checked(folder, voxels + "scene: model.fbx\n"),
                 HasSubstr("mine.yaml:4:8: scene file DIR/model.fbx: unknown extension '.fbx'"));
     EXPECT_THAT(checked(folder, voxels + "scene: model.glb\n"), HasSubstr("mine.yaml:4:8: "));
@@ -218,14 +217,13 @@ TEST_F(OwnExperiment, CheckFindsWhatIsBothFixedAndSweptInEveryFormOfASweep) {
                       "technique: soft_shadows\nscene: outdoor/city\n"
                       "scene_params: {building_height: 2}\nsweep: {scene.building_height: [1, 2]}"),
               "gfxrepro: DIR/mine.yaml:5:33: 'scene.building_height' is swept, too, in "
-              "DIR/mine.yaml:6:9; "
-              "allowed: in 'scene_params' or in 'sweep'\n");
+              "DIR/mine.yaml:6:9; allowed: in 'scene_params' or in 'sweep'\n");
     EXPECT_EQ(checked(folder, scene + "output: {width: 64}\nsweep: {output.width: [32, 64]}"),
               "gfxrepro: DIR/mine.yaml:5:17: 'output.width' is swept, too, in DIR/mine.yaml:6:9; "
               "allowed: in 'output' or in 'sweep'\n");
     EXPECT_EQ(checked(folder, scene + "sweep: {scene: [shapes/torus, shapes/sphere]}"),
-              "gfxrepro: DIR/mine.yaml:4:8: 'scene' is swept, too, in DIR/mine.yaml:5:9; "
-              "allowed: in 'scene' or in 'sweep'\n");
+              "gfxrepro: DIR/mine.yaml:4:8: 'scene' is swept, too, in DIR/mine.yaml:5:9; allowed: "
+              "in 'scene' or in 'sweep'\n");
     folder.write("preset.yaml", "sweep: {resolution: [32, 64]}\n");
     EXPECT_EQ(checked(folder, "extends: preset.yaml\n" + scene + "params: {resolution: 64}\n"),
               "gfxrepro: DIR/mine.yaml:6:22: 'resolution' is swept, too, in DIR/preset.yaml:1:9; " +
@@ -384,9 +382,8 @@ TEST_F(OwnExperiment, CheckSaysHowToNameAParameter) {
                 "technique: soft_shadows\nscene: shapes/torus\n"
                 "sweep: {light_size: [1, 2]}\n"),
         HasSubstr(
-            "unknown parameter 'light_size'; of 'light' there are light_ratio, "
-            "light_height, light_azimuth_deg, light_elevation_deg, light_view_frame, light_grid, "
-            "light_views\n"));
+            "unknown parameter 'light_size'; of 'light' there are light_ratio, light_height, "
+            "light_azimuth_deg, light_elevation_deg, light_view_frame, light_grid, light_views\n"));
     EXPECT_EQ(checked(folder,
                       "technique: clustered_reflections\nscene: shapes/linked_tori\nsweep: "
                       "{method: [clustered, environment_map], bin_exponent: [0.25]}\n"),
@@ -431,8 +428,8 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
               "you mean 'synthesis'?\n");
     EXPECT_EQ(
         laidOut("{metric: wall_time_ms, pass: synthesis}"),
-        "gfxrepro: DIR/mine.yaml:5:36: metric 'wall_time_ms' is not taken of a pass; those "
-        "that are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
+        "gfxrepro: DIR/mine.yaml:5:36: metric 'wall_time_ms' is not taken of a pass; those that "
+        "are: gpu_time_ms, cpu_time_ms, process_time_ms, and metrics of the technique\n");
     EXPECT_THAT(laidOut("{metric: voxels}, b: {of: a /}"), HasSubstr("'a /' is no expression"));
     EXPECT_THAT(laidOut("{metric: gpu_time_ms}"),
                 HasSubstr("DIR/mine.yaml:5:36: metric 'gpu_time_ms' is of a pass, and the cell "
@@ -464,9 +461,10 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
     for (const char* column : {"{metric: cpu_time_ms, pass: draw}", "{metric: rmse, pass: result}",
                                "{metric: wrong_pct, pass: result}"}) {
         const auto good = folder.write(
-            "good.yaml", std::string("sweep_of: good\ntitle: Good\ntechnique: template\nlayout: "
-                                     "{columns: {a: ") +
-                             column + "}}\n");
+            "good.yaml",
+            std::string(
+                "sweep_of: good\ntitle: Good\ntechnique: template\nlayout: {columns: {a: ") +
+                column + "}}\n");
         EXPECT_EQ(gfxrepro({"check", good}).err, "") << column;
     }
     const auto curve = folder.write(
@@ -485,9 +483,9 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
         const std::string table =
             fmt::format("layout: {{columns: {{a: {{metric: {}}}}}}}\n", metric);
         EXPECT_THAT(checked(folder, of + table),
-                    HasSubstr(fmt::format("metric '{}' is of a pass, and the cell names none; "
-                                          "allowed: with pass: ",
-                                          metric)));
+                    HasSubstr(fmt::format(
+                        "metric '{}' is of a pass, and the cell names none; allowed: with pass: ",
+                        metric)));
     }
     const std::string computed =
         "layout: {rows: scene, columns: {a: {pass: draw}, b: {of: 2 * a}}, cell: {metric: "
@@ -500,19 +498,20 @@ TEST_F(OwnExperiment, CheckKnowsMetricsAndPasses) {
 TEST_F(OwnExperiment, CheckKnowsCases) {
     const std::string head =
         "technique: voxelization\nscene: shapes/torus\nmeasure: {lane: quality}\n"
-        "sweep: {fill: [surface, solid], resolution: [32, 64], exclude: [{fill: solid, "
-        "resolution: 64}]}\n";
+        "sweep: {fill: [surface, solid], resolution: [32, 64], exclude: [{fill: solid, resolution: "
+        "64}]}\n";
     const auto laidOut = [&](const std::string& columns, const std::string& more = "") {
         return checked(folder, head + more + "layout: {rows: scene, columns: {" + columns + "}}\n");
     };
-    EXPECT_EQ(laidOut("a: {metric: voxels, where: {fill: sold, resolution: 32}}"),
-              "gfxrepro: DIR/mine.yaml:7:67: layout: where.fill is sold; allowed: surface | "
-              "solid\n");
+    EXPECT_EQ(
+        laidOut("a: {metric: voxels, where: {fill: sold, resolution: 32}}"),
+        "gfxrepro: DIR/mine.yaml:7:67: layout: where.fill is sold; allowed: surface | solid\n");
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: [32, 128]}}"),
                 EndsWith(": layout: where.resolution is 128; allowed: 32 | 64\n"));
-    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: surface, resolution: 32, frame: 1}}"),
-                EndsWith(": layout: where.frame is 1; allowed: 0; 'output: {frames: N}' "
-                         "draws N of them\n"));
+    EXPECT_THAT(
+        laidOut("a: {metric: voxels, where: {fill: surface, resolution: 32, frame: 1}}"),
+        EndsWith(
+            ": layout: where.frame is 1; allowed: 0; 'output: {frames: N}' draws N of them\n"));
     EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 64}}"),
                 EndsWith(": layout: column 'a' is of no case: none has fill=solid, resolution=64, "
                          "scene=shapes/torus\n"));
@@ -525,13 +524,14 @@ TEST_F(OwnExperiment, CheckKnowsCases) {
     for (const char* profile : {"full", "quick"}) {  // in one of which it is blank
         EXPECT_EQ(gfxrepro({"check", file, "--profile", profile}).err, "") << profile;
     }
-    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
-                        "'{sum:.0f}'}"),
-                EndsWith(": layout: column 'a' shows the sum of one value in each process; "
-                         "allowed: median, or 'output: {frames}'\n"));
-    EXPECT_THAT(laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: "
-                        "'{stddev:.0f}'}"),
-                HasSubstr("shows the stddev of one value"));
+    EXPECT_THAT(
+        laidOut("a: {metric: voxels, where: {fill: solid, resolution: 32}, format: '{sum:.0f}'}"),
+        EndsWith(": layout: column 'a' shows the sum of one value in each process; allowed: "
+                 "median, or 'output: {frames}'\n"));
+    EXPECT_THAT(
+        laidOut(
+            "a: {metric: voxels, where: {fill: solid, resolution: 32}, format: '{stddev:.0f}'}"),
+        HasSubstr("shows the stddev of one value"));
 }
 
 TEST_F(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
@@ -543,9 +543,10 @@ TEST_F(OwnExperiment, WhatNoMeasurementCouldJudgeIsRefusedBeforeAnyIsMade) {
     for (const char* command : {"check", "run"}) {
         const ProcessResult result = gfxrepro({command, file});
         EXPECT_EQ(result.exitCode, 2) << command;
-        EXPECT_THAT(result.err,
-                    HasSubstr("mine.yaml:8:3: claim 'C' needs numbers along 'fill', which holds "
-                              "'surface'"));
+        EXPECT_THAT(
+            result.err,
+            HasSubstr(
+                "mine.yaml:8:3: claim 'C' needs numbers along 'fill', which holds 'surface'"));
     }
 }
 
@@ -589,12 +590,12 @@ TEST_F(OwnExperiment, ClaimsReadTheColumnsOfATableThatNobodyLaidOut) {
                             "claims:\n  grows: {says: there are more voxels, trend: " +
                                 operand +
                                 ", over: resolution, direction: increasing}\n"
-                                "  solid: {says: a solid has more, order: "
-                                "[fill=surface, fill=solid], of: voxels}\n");
+                                "  solid: {says: a solid has more, order: [fill=surface, "
+                                "fill=solid], of: voxels}\n");
     };
     EXPECT_THAT(endedWith(2, gfxrepro({"check", configOf("voxel")})).err,
-                HasSubstr(":8:3: claim 'grows': 'voxel' is no column; did you mean "
-                          "'voxels'? (columns: frame_ms, "));
+                HasSubstr(":8:3: claim 'grows': 'voxel' is no column; did you mean 'voxels'? "
+                          "(columns: frame_ms, "));
     const std::string dir = folder.path() / "run";
     endedWith(0, gfxrepro({"reproduce", configOf("voxels"), "--out", dir}));
     const std::string claims = readFile(dir + "/claims.csv");

@@ -61,12 +61,12 @@ TEST_F(OwnProgram, ATestOfMeansIsOfATruthOfSeveralFrames) {
 
 TEST_F(OwnProgram, WhatIsOfNoPassSaysWhatToWrite) {
     const std::string columns = "layout: {rows: [pattern, n], columns: {a: {metric: ";
-    EXPECT_EQ(refusal(columns + "rays, pass: nonexistent}}}\n"),
-              "gfxrepro: DIR/mine.yaml:9:43: technique 'external' has no pass 'nonexistent'; it "
-              "has p\n");
+    EXPECT_EQ(
+        refusal(columns + "rays, pass: nonexistent}}}\n"),
+        "gfxrepro: DIR/mine.yaml:9:43: technique 'external' has no pass 'nonexistent'; it has p\n");
     EXPECT_THAT(refusal(columns + "gpu_time_ms}}}\n"),
-                HasSubstr("names none; allowed: none, as there are no passes; the time "
-                          "of a whole frame is wall_time_ms\n"));
+                HasSubstr("names none; allowed: none, as there are no passes; the time of a whole "
+                          "frame is wall_time_ms\n"));
     EXPECT_EQ(refusal(columns + "frame_ms}}}\n"),
               "gfxrepro: DIR/mine.yaml:9:43: technique 'external' has no metric 'frame_ms'; the "
               "time of a frame is the metric wall_time_ms\n");
@@ -96,9 +96,8 @@ TEST_F(OwnProgram, ATruthIsNoCase) {
     };
     EXPECT_EQ(of("{n: 16, seed: 1}"),
               "gfxrepro: DIR/mine.yaml:7:36: program: image 'p': truth: {n: 16, seed: 1} is what "
-              "makes the case sweep/mine pattern=even n=16 itself, whose error would be 0 "
-              "whatever the program does; allowed: a parameter, 'seed' or 'frame' that no case "
-              "has\n");
+              "makes the case sweep/mine pattern=even n=16 itself, whose error would be 0 whatever "
+              "the program does; allowed: a parameter, 'seed' or 'frame' that no case has\n");
     EXPECT_THAT(of("{n: 16, seed: 5001}"), HasSubstr("makes the case")) << "of the sixth process";
     EXPECT_EQ(of("{n: 16, seed: 6001}"), "");
     const std::string goesOn = "measure: {processes: 6, time_budget_s: 60}\n";
@@ -123,11 +122,10 @@ TEST_F(OwnProgram, ACaseThatIsTheTruthOfOthersIsSaid) {
     };
     EXPECT_THAT(
         of("{pattern: even, n: 16}"),
-        HasSubstr("mine.yaml: sweep/mine pattern=even n=16 is the truth of 'p' ({pattern: "
-                  "even, n: 16}) by itself: its errors are 0 whatever the program does.\n"));
-    EXPECT_THAT(of("{n: 16}"),
-                HasSubstr("2 cases, sweep/mine pattern=even n=16 the first, are each "
-                          "the truth of 'p' ({n: 16}) by itself: "));
+        HasSubstr("mine.yaml: sweep/mine pattern=even n=16 is the truth of 'p' ({pattern: even, n: "
+                  "16}) by itself: its errors are 0 whatever the program does.\n"));
+    EXPECT_THAT(of("{n: 16}"), HasSubstr("2 cases, sweep/mine pattern=even n=16 the first, are "
+                                         "each the truth of 'p' ({n: 16}) by itself: "));
     EXPECT_THAT(of("{n: 64}"), Not(HasSubstr("by itself")));
 }
 
@@ -177,12 +175,12 @@ TEST_F(OwnProgram, AnOverrideLeavesTheRowsThatClaimsCompare) {
 
 /// What a table that nobody laid out divides, a claim reads as a time, too.
 TEST_F(OwnProgram, AQuotientOfTimesIsATime) {
-    const auto file = folder.write("mine.yaml",
-                                   "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
-                                   "scene: models/duck\nsweep: {rule: [rasterized, thin]}\n"
-                                   "scene_seeds: 3\nmeasure: {lane: quality}\n"
-                                   "claims: {c: {says: so, bound: \"frame ÷ rasterized\", "
-                                   "at_most: 1.2}}\n");
+    const auto file =
+        folder.write("mine.yaml",
+                     "sweep_of: mine\ntitle: Mine\ntechnique: voxelization\n"
+                     "scene: models/duck\nsweep: {rule: [rasterized, thin]}\n"
+                     "scene_seeds: 3\nmeasure: {lane: quality}\n"
+                     "claims: {c: {says: so, bound: \"frame ÷ rasterized\", at_most: 1.2}}\n");
     EXPECT_THAT(gfxrepro({"check", file}).err,
                 HasSubstr("mine.yaml:8:10: 'scene_seeds' takes no times, and claim 'c' reads "
                           "'frame ÷ rasterized'; allowed: scene_seeds: 1\n"));

@@ -110,27 +110,25 @@ TEST_F(Frames, WhatIsOfPassesAloneIsToldWithThem) {
     };
     const ProcessResult result = reproduced("{metric: number}");
     EXPECT_EQ(result.exitCode, 2);
-    EXPECT_THAT(
-        result.err,
-        HasSubstr("error: sweep/mine: column 'v': no 'number' was recorded; it is there for pass: "
-                  "left, right\n"));
+    EXPECT_THAT(result.err, HasSubstr("error: sweep/mine: column 'v': no 'number' was recorded; it "
+                                      "is there for pass: left, right\n"));
     EXPECT_EQ(gfxrepro({"table", dir}).exitCode, 2);
     EXPECT_EQ(rowsOf(dir, "number").size(), 8U) << "nothing that was measured is lost";
     EXPECT_EQ(reproduced("{metric: number, pass: left}").exitCode, 0);
 }
 
 TEST_F(Frames, SeedsAreOfTheCaseAndOfItsProcess) {
-    fs::permissions(folder.write("seeded.sh",
-                                 "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": '$1', "
-                                 "\"unit\": \"1\"}' >&3\n"),
-                    fs::perms::owner_all);
+    fs::permissions(
+        folder.write(
+            "seeded.sh",
+            "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": '$1', \"unit\": \"1\"}' >&3\n"),
+        fs::perms::owner_all);
     const auto numbersWith = [&](const std::string& more) {
-        const std::string config =
-            folder.write("seeds.yaml",
-                         "sweep_of: seeds\ntitle: T\ntechnique: external\n"
-                         "program: {command: [\"{here}/seeded.sh\", \"{seed}\"], metrics: "
-                         "{number: \"1\"}" +
-                             more);
+        const std::string config = folder.write(
+            "seeds.yaml",
+            "sweep_of: seeds\ntitle: T\ntechnique: external\n"
+            "program: {command: [\"{here}/seeded.sh\", \"{seed}\"], metrics: {number: \"1\"}" +
+                more);
         fs::remove_all(dir);
         EXPECT_EQ(run(config).exitCode, 0);
         std::vector<double> numbers;

@@ -98,9 +98,9 @@ TEST_F(PicturesOfPrograms, OtherFormatsAreReadAsTheirKind) {
     EXPECT_THAT(readFile(dir + "/records.csv"),
                 HasSubstr("image 'result': one of it and its truth is linear, as EXR files are, "
                           "the other sRGB, as PNG files are"));
-    EXPECT_THAT(endedWith(2, run("p.gif", "truth.png")).err,
-                HasSubstr("file is result.gif; allowed: a name that ends in one of "
-                          ".exr, .png, .pfm, "));
+    EXPECT_THAT(
+        endedWith(2, run("p.gif", "truth.png")).err,
+        HasSubstr("file is result.gif; allowed: a name that ends in one of .exr, .png, .pfm, "));
 }
 
 /// A path tracer as far as a config can tell: noise that falls with the root of the samples, less
@@ -127,9 +127,9 @@ TEST_F(PicturesOfPrograms, GammaOfAPngIsReadAndSaid) {
     folder.write("truth.ppm", truth);
     ASSERT_EQ(run("light.png", "truth.ppm").exitCode, 0);
     EXPECT_LT(rowsOf(dir, "mse").at(0).value, 1e-9);
-    EXPECT_THAT(readFile(dir + "/journal.jsonl"),
-                HasSubstr("warning: image 'result': its values are converted from a "
-                          "gamma of 1 to sRGB"));
+    EXPECT_THAT(
+        readFile(dir + "/journal.jsonl"),
+        HasSubstr("warning: image 'result': its values are converted from a gamma of 1 to sRGB"));
     EXPECT_EQ(gfxrepro({"image", "info", (folder.path() / "light.png").string()}).out,
               "png 16x12, 3 channels, sRGB\nits values are converted from a gamma of 1 to sRGB\n");
 }
@@ -169,10 +169,10 @@ TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
         "sweep: {pattern: all, samples: {log2: [16, 64]}}\n"
         "claims:\n"
         "  slope: {says: the error falls, trend: rmse, over: samples, at_most: -0.4}\n"
-        "  better: {says: jittered samples have the lower error, order: "
-        "[PROGRESSIVE_MULTI_JITTER, SOBOL], of: rmse, at: {samples: 64}}\n"
-        "  faster: {says: more samples take longer, order: [samples=16, samples=64], "
-        "of: render_ms}\n");
+        "  better: {says: jittered samples have the lower error, order: [PROGRESSIVE_MULTI_JITTER, "
+        "SOBOL], of: rmse, at: {samples: 64}}\n"
+        "  faster: {says: more samples take longer, order: [samples=16, samples=64], of: "
+        "render_ms}\n");
     const ProcessResult bad =
         endedWith(2, gfxrepro({"check", folder.write("bad.yaml", [&] {
                                    std::string text = readFile(config);
@@ -190,8 +190,9 @@ TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
         EXPECT_THAT(claims, ContainsRegex(std::string("\n") + id + ",[^\n]*,holds,"));
     }
     const std::string page = readFile(dir + "/report.html");
-    EXPECT_THAT(page, HasSubstr("PROGRESSIVE_MULTI_JITTER is nearer to its truth than SOBOL in "
-                                "all 3 rows"));
+    EXPECT_THAT(
+        page,
+        HasSubstr("PROGRESSIVE_MULTI_JITTER is nearer to its truth than SOBOL in all 3 rows"));
     EXPECT_THAT(page, HasSubstr("mse over render"));
 }
 

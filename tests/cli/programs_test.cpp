@@ -138,9 +138,9 @@ TEST_F(ExternalProgram, EveryFailureBecomesARow) {
               "other_size: error (image 'result': has 8 × 8 pixels; 32 × 16 were asked for)");
     EXPECT_EQ(lines[11], "silent: error (metric 'number': the program gave no value of it)");
     EXPECT_EQ(lines[12], "twice: error (metric 'number' is given twice for frame 0, repeat 0)");
-    EXPECT_EQ(lines[13],
-              "undeclared: error (technique 'external' has no metric 'nmuber'; did you mean "
-              "'number'?)");
+    EXPECT_EQ(
+        lines[13],
+        "undeclared: error (technique 'external' has no metric 'nmuber'; did you mean 'number'?)");
     EXPECT_EQ(lines[14],
               "wrong_unit: error (metric 'number' is recorded in 'm', but declared in '1')");
     // What it printed is in the log.
@@ -161,8 +161,7 @@ TEST_F(ExternalProgram, ATimeBelowZeroIsNoneAndItsLastLinesAreKept) {
     EXPECT_THAT(
         lines, ElementsAre("early: error (metric 'own_ms' is -5 ms; a time is 0 or more)", "ok: ok",
                            "talks: error (program '" + folder.path().string() +
-                               "/renderer.sh' ended with exit code 3: two / three / "
-                               "four)"));
+                               "/renderer.sh' ended with exit code 3: two / three / four)"));
 }
 
 TEST_F(ExternalProgram, RecordsWhatItSaysAndHowFarItsPictureIsFromTheTruth) {
@@ -265,8 +264,8 @@ TEST_F(ExternalProgram, OneThatIsNotHereIsUnsupported) {
         "sweep_of: none\ntitle: T\ntechnique: external\n"
         "program: {command: no-such-program-anywhere}\nmeasure: {lane: quality, processes: 1}\n");
     EXPECT_THAT(endedWith(0, gfxrepro({"check", config})).out,
-                HasSubstr("the program 'no-such-program-anywhere' is not on this "
-                          "machine: its cases will be unsupported"));
+                HasSubstr("the program 'no-such-program-anywhere' is not on this machine: its "
+                          "cases will be unsupported"));
     EXPECT_EQ(run(config).exitCode, 4);
     const std::vector<records::Record> rows = rowsOf(dir, "");
     ASSERT_EQ(rows.size(), 1U);
@@ -279,8 +278,9 @@ TEST_F(ExternalProgram, OneThatLacksAFileIsNotMeasured) {
     std::string gone = kProgram;
     gone.replace(gone.find("renderer.sh"), 11, "gone.sh");
     for (const auto& [config, error] :
-         {std::pair{kProgram + std::string("  images: {result: {file: result.png, truth: "
-                                           "\"{here}/gone.png\"}}\n"),
+         {std::pair{kProgram +
+                        std::string(
+                            "  images: {result: {file: result.png, truth: \"{here}/gone.png\"}}\n"),
                     ":11:46: program: image 'result': truth: there is no file "},
           {gone, ":5:12: program: command: there is no program "}}) {
         const fs::path file = folder.write("mine.yaml", config);
@@ -295,12 +295,12 @@ TEST_F(ExternalProgram, OneThatLacksAFileIsNotMeasured) {
 
 TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
     // Says of each run with which number it was made.
-    fs::permissions(folder.write("renderer.sh",
-                                 "#!/bin/sh\necho $2 >>\"$(dirname \"$0\")/runs\"\n"
-                                 "cp \"$(dirname \"$0\")/picture.png\" \"$3/result.png\"\n"
-                                 "echo '{\"metric\": \"number\", \"value\": 1, \"unit\": \"1\"}' "
-                                 ">&3\n"),
-                    fs::perms::owner_all);
+    fs::permissions(
+        folder.write("renderer.sh",
+                     "#!/bin/sh\necho $2 >>\"$(dirname \"$0\")/runs\"\n"
+                     "cp \"$(dirname \"$0\")/picture.png\" \"$3/result.png\"\n"
+                     "echo '{\"metric\": \"number\", \"value\": 1, \"unit\": \"1\"}' >&3\n"),
+        fs::perms::owner_all);
     const std::string config = write(
         "  images: {result: {file: result.png, truth: {given: 99}}}\n"
         "output: {width: 32, height: 16}\n"
@@ -441,13 +441,13 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
                   folder.path().string() + "/gone.png\n");
     EXPECT_EQ(check(image + "\"{here}/truth.png\"}}\nsweep: {given: [1, 2]}\n"),
               "mine.yaml: ok, sweep/mine, 2 cases, 0 claims\n");
-    EXPECT_EQ(check("params: {givn: 1}\n"),
-              "mine.yaml:11:10: technique 'external': unknown parameter 'givn'; did you mean "
-              "'given'?\n");
-    EXPECT_EQ(check("sweep: {given: [1, 2]}\n"
-                    "layout: {rows: given, columns: {n: {metric: nmuber}}}\n"),
-              "mine.yaml:12:36: technique 'external' has no metric 'nmuber'; did you mean "
-              "'number'?\n");
+    EXPECT_EQ(
+        check("params: {givn: 1}\n"),
+        "mine.yaml:11:10: technique 'external': unknown parameter 'givn'; did you mean 'given'?\n");
+    EXPECT_EQ(
+        check("sweep: {given: [1, 2]}\n"
+              "layout: {rows: given, columns: {n: {metric: nmuber}}}\n"),
+        "mine.yaml:12:36: technique 'external' has no metric 'nmuber'; did you mean 'number'?\n");
     EXPECT_EQ(check("scene: models/duck\n"),
               "mine.yaml:11:1: 'scene': the program's command has no {scene}\n");
     EXPECT_EQ(check("output: {frames: 2}\nmeasure: {lane: quality}\n"),

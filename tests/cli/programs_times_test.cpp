@@ -61,10 +61,10 @@ TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
             "sweep: {number: [1, 2, 4]}\n"
             "layout: {rows: number, columns: {ms: {metric: wall_time_ms}, own: {metric: own_ms}}}\n"
             "claims:\n"
-            "  slope: {says: it falls with the number, trend: ms, over: number, "
-            "at_least: -1.2, at_most: -0.6}\n"
-            "  slower: {says: two take longer than four, kind: algorithmic, across: number, "
-            "ratio: \"'2' / '4'\", at_least: 1.3, of: ms}\n"
+            "  slope: {says: it falls with the number, trend: ms, over: number, at_least: -1.2, "
+            "at_most: -0.6}\n"
+            "  slower: {says: two take longer than four, kind: algorithmic, across: number, ratio: "
+            "\"'2' / '4'\", at_least: 1.3, of: ms}\n"
             "  absolute: {says: it takes a tenth of a second, kind: absolute, bound: ms, at_least: "
             "100, at: {number: 1}}\n"));
     const std::string claims = readFile(runDir() + "/claims.csv");
@@ -149,13 +149,13 @@ TEST_F(Timed, WarmUpTruthAndErrorsAreOfTheFirstProcessAlone) {
 }
 
 TEST_F(Timed, APictureThatIsAnotherInEachProcessIsRecordedInEach) {
-    fs::permissions(folder.write("renderer.sh",
-                                 "#!/bin/sh\nhere=$(dirname \"$0\")\n"
-                                 "[ $1 = 99 ] || echo x >>\"$here/runs\"\n"
-                                 "cp \"$here/grey$(wc -l <\"$here/runs\").png\" \"$2/result.png\"\n"
-                                 "echo '{\"metric\": \"own_ms\", \"value\": 1, \"unit\": \"ms\"}' "
-                                 ">&3\n"),
-                    fs::perms::owner_all);
+    fs::permissions(
+        folder.write("renderer.sh",
+                     "#!/bin/sh\nhere=$(dirname \"$0\")\n"
+                     "[ $1 = 99 ] || echo x >>\"$here/runs\"\n"
+                     "cp \"$here/grey$(wc -l <\"$here/runs\").png\" \"$2/result.png\"\n"
+                     "echo '{\"metric\": \"own_ms\", \"value\": 1, \"unit\": \"ms\"}' >&3\n"),
+        fs::perms::owner_all);
     for (int i = 1; i <= 7; ++i) {
         image::Image8 picture(16, 16, 3, static_cast<std::uint8_t>(20 * i));
         picture.values()[0] = 7;
@@ -167,12 +167,12 @@ TEST_F(Timed, APictureThatIsAnotherInEachProcessIsRecordedInEach) {
 }
 
 TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
-    fs::permissions(folder.write("renderer.sh",
-                                 "#!/bin/sh\ncp \"$(dirname \"$0\")/picture.png\" "
-                                 "\"$2/result.png\"\necho '{\"metric\": \"own_ms\", \"value\": "
-                                 "'$1', \"unit\": \"ms\"}' >&3\n"
-                                 "[ \"$3\" != 2 ] || echo $1 >>\"$(dirname \"$0\")/truths\"\n"),
-                    fs::perms::owner_all);
+    fs::permissions(
+        folder.write("renderer.sh",
+                     "#!/bin/sh\ncp \"$(dirname \"$0\")/picture.png\" \"$2/result.png\"\necho "
+                     "'{\"metric\": \"own_ms\", \"value\": '$1', \"unit\": \"ms\"}' >&3\n"
+                     "[ \"$3\" != 2 ] || echo $1 >>\"$(dirname \"$0\")/truths\"\n"),
+        fs::perms::owner_all);
     const std::string head =
         "sweep_of: mine\ntitle: Mine\ntechnique: external\n"
         "program:\n"
@@ -191,9 +191,10 @@ TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
     std::string other = head;
     other.replace(other.find(" {out}"), 6, " {out} {n}");
     // A truth of another word may have the same random numbers.
-    EXPECT_THAT(seedsOf(other + "  params: {n: [a, b]}\n  images: {result: {file: result.png, "
-                                "truth: {n: b}}}\n"),
-                Each(1));
+    EXPECT_THAT(
+        seedsOf(other +
+                "  params: {n: [a, b]}\n  images: {result: {file: result.png, truth: {n: b}}}\n"),
+        Each(1));
     const std::string csv = readFile(runDir() + "/tables/sweep-mine.csv");
     const std::string markdown = readFile(runDir() + "/tables/sweep-mine.md");
     EXPECT_THAT(csv, HasSubstr(",one seed,"));

@@ -48,8 +48,8 @@ TEST_F(RunCommand, AnExportedSceneMeasuresAsTheCataloguesDoes) {
     const std::string config = folder.write(
         "tree.yaml",
         "sweep_of: tree\ntitle: T\ntechnique: depth_sampling\nmeasure: {lane: quality}\n"
-        "params: {method: conventional, redundancy: visibility, view_distance: 0.55, "
-        "view_spread: 0.5, output_frames: 10, availability: true}\n"
+        "params: {method: conventional, redundancy: visibility, view_distance: 0.55, view_spread: "
+        "0.5, output_frames: 10, availability: true}\n"
         "output: {width: 128, height: 128}\nsweep: {scene: [outdoor/tree, tree.glb]}\n");
     endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     for (const char* metric : {"redundant_pct", "available_mean_pct"}) {
@@ -66,14 +66,14 @@ TEST_F(RunCommand, AnExportedSceneMeasuresAsTheCataloguesDoes) {
 // Lights, camera paths and motions, too.
 TEST_F(RunCommand, AnExportedRoomShowsTheCataloguesPicture) {
     endedWith(0, gfxrepro({"scene", "indoor/living_room", "--export", folder.path() / "room.glb"}));
-    const std::string config = folder.write(
-        "room.yaml",
-        "sweep_of: room\ntitle: R\ntechnique: reflection_reuse\n"
-        "measure: {lane: quality}\n"
-        "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, first_frame: "
-        "3, motion: true}\n"
-        "output: {width: 64, height: 48, frames: 2}\nsweep: {scene: [indoor/living_room, "
-        "room.glb]}\n");
+    const std::string config =
+        folder.write("room.yaml",
+                     "sweep_of: room\ntitle: R\ntechnique: reflection_reuse\n"
+                     "measure: {lane: quality}\n"
+                     "params: {method: ray_traced, pictures: true, view: path_1, path_frames: 9, "
+                     "first_frame: 3, motion: true}\n"
+                     "output: {width: 64, height: 48, frames: 2}\nsweep: {scene: "
+                     "[indoor/living_room, room.glb]}\n");
     endedWith(0, gfxrepro({"run", config, "--device", "software", "--out", dir}));
     std::vector<fs::path> pictures;
     for (const auto& entry : fs::recursive_directory_iterator(dir + "/images")) {
@@ -142,9 +142,8 @@ TEST_F(RunCommand, TablesSayAtWhichParametersTheyWereMeasured) {
         << "the printed cell; 3 is not printed";
     EXPECT_EQ(parametersOf(config, folder.path() / "only", {"--only", "number=1"}),
               "Measured at the parameters of the profile paper.");
-    const std::string at = printedConfig(folder,
-                                         "  paper: {printed: {at: {output.frames: 500}}, "
-                                         "output: {frames: 3}}\n");
+    const std::string at = printedConfig(
+        folder, "  paper: {printed: {at: {output.frames: 500}}, output: {frames: 3}}\n");
     EXPECT_EQ(parametersOf(at, folder.path() / "at", {"--profile", "paper"}),
               "Measured at frames 3 (printed 500).");
 }
@@ -153,8 +152,7 @@ TEST_F(RunCommand, PrintedParametersHaveToBeParameters) {
     const std::string config = printedConfig(folder, "  paper: {printed: {at: {pause_m: 500}}}\n");
     EXPECT_EQ(endedWith(2, mockGfxrepro({"check", config})).err,
               "gfxrepro: " + config +
-                  ":18:35: printed.at: 'pause_m' is no parameter; did you mean "
-                  "'pause_ms'?\n");
+                  ":18:35: printed.at: 'pause_m' is no parameter; did you mean 'pause_ms'?\n");
 }
 
 /// Of three cases alike: told at the end, once.

@@ -217,11 +217,11 @@ TEST_F(SchedulerTest, TablesThatShowSetUpAreNotPreparedInPairs) {
     run::Plan plan;
     const auto add = [&](const std::string& id, const std::string& column) {
         const fs::path file = folder.write(
-            id + ".yaml", "sweep_of: " + id + "\ntitle: T\ntechnique: t\nsweep: {n: [1, 2]}\n" +
-                              (column.empty() ? ""
-                                              : "layout:\n  rows: n\n  columns: {a: {metric: "
-                                                "wall_time_ms}, b: " +
-                                                    column + "}\n"));
+            id + ".yaml",
+            "sweep_of: " + id + "\ntitle: T\ntechnique: t\nsweep: {n: [1, 2]}\n" +
+                (column.empty() ? ""
+                                : "layout:\n  rows: n\n  columns: {a: {metric: wall_time_ms}, b: " +
+                                      column + "}\n"));
         plan.experiments.push_back(config::loadExperiment(file, {}, folder.path()));
     };
     add("frames", "{metric: gpu_time_ms, pass: draw}");

@@ -176,11 +176,9 @@ TEST_F(Seal, AnotherConfigJudgesApartAndSaysSo) {
     run();
     const std::string before = readFile(dir + "/claims.csv");
     const ProcessResult result = endedWith(1, mockGfxrepro({"claims", dir, "--config", config(2)}));
-    EXPECT_THAT(
-        result.out,
-        HasSubstr(
-            "sweep/mock fails (news): the number is small (small); judged after the run, by a "
-            "config that it did not know; one sample\n"));
+    EXPECT_THAT(result.out,
+                HasSubstr("sweep/mock fails (news): the number is small (small); judged after the "
+                          "run, by a config that it did not know; one sample\n"));
     EXPECT_THAT(result.out,
                 HasSubstr("judged after the run: " + dir + "/judged-afterwards/claims.csv\n"));
     EXPECT_EQ(readFile(dir + "/claims.csv"), before);

@@ -26,8 +26,8 @@ TEST_F(Sensitivity, FindsTheNumberAtWhichAVerdictFlips) {
     const std::vector<std::string> command = sensitivityCommand(config, out);
     const ProcessResult run = endedWith(0, mockGfxrepro(command));
     EXPECT_EQ(run.out,
-              "sweep/mock small: holds unless number is 10 (flips between 5 and 10, near "
-              "6); rests on: number (of 1 tried)\n"
+              "sweep/mock small: holds unless number is 10 (flips between 5 and 10, near 6); rests "
+              "on: number (of 1 tried)\n"
               "sweep/mock any: holds under all 4; rests on: none of the 1 tried\n" +
                   out + "/sweep-mock/sensitivity.md\n");
     EXPECT_THAT(readFile(out + "/sweep-mock/sensitivity.csv"),
@@ -58,9 +58,8 @@ TEST_F(Sensitivity, CasesThatFailedLeaveItIncomplete) {
         "assumptions:\n  behaviour: {range: [throw], why: left open}\n");
     const std::string out = folder.path() / "out";
     EXPECT_THAT(endedWith(4, mockGfxrepro(sensitivityCommand(config, out))).err,
-                HasSubstr("sweep/mock: not all of its cases were measured; the runs are "
-                          "in " +
-                          out + "/sweep-mock\n"));
+                HasSubstr("sweep/mock: not all of its cases were measured; the runs are in " + out +
+                          "/sweep-mock\n"));
 }
 
 TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
@@ -73,8 +72,8 @@ TEST_F(Sensitivity, TriesTablesByTurnsWithinABudgetAndStartsFromARun) {
     EXPECT_THAT(none.out, HasSubstr("sweep/mock any: holds under all 1; rests on: not tried\n"));
     command.resize(command.size() - 2);
     const ProcessResult all = mockGfxrepro(command);
-    EXPECT_THAT(all.out, HasSubstr("sweep/mock any: holds under all 4; rests on: none of the 1 "
-                                   "tried\n"));
+    EXPECT_THAT(all.out,
+                HasSubstr("sweep/mock any: holds under all 4; rests on: none of the 1 tried\n"));
     EXPECT_FALSE(fs::exists(out + "/sweep-mock/as_configured"));
     for (const char* bad : {"20", "m", "0m", "-1m", "20 m", "20min", "nanm", "infh"}) {
         EXPECT_EQ(mockGfxrepro({"sensitivity", config, std::string("--budget=") + bad}).err,

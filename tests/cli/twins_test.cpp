@@ -213,8 +213,10 @@ TEST_F(Twins, FailTogetherAndAreTriedAgainTogether) {
                    "sweep: {behaviour: [flake, throw]}\nparams: {marker: " + marker + "}\n")};
     const ProcessResult run = endedWith(4, measureTwins(configs, dir));
     EXPECT_THAT(run.out, HasSubstr("2 of 4 finished, 1 as a twin, 2 flaky, 2 failed; records: "));
-    EXPECT_THAT(run.err, HasSubstr("error demo2026/2 behaviour=throw (as demo2026/1 "
-                                   "behaviour=throw): nothing works\n"));
+    EXPECT_THAT(
+        run.err,
+        HasSubstr(
+            "error demo2026/2 behaviour=throw (as demo2026/1 behaviour=throw): nothing works\n"));
     EXPECT_EQ(measuredCount(dir), 2);
     const std::vector<std::string> lines = statusLines(dir);
     ASSERT_EQ(lines.size(), 4U);

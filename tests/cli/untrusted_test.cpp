@@ -185,18 +185,17 @@ TEST_F(Untrusted, WhatHasAnotherShapeIsSaidWithItsPlace) {
     with(manifest, "/invocations/0/command", nullptr, {"report", dir},
          "'/invocations/0/command' is null; expected text");
     folder.write("run/journal.jsonl",
-                 "{\"event\": \"case\", \"case\": \"a\", \"cost\": {\"load_s\": 0, "
-                 "\"setup_s\": 0, \"render_s\": 0, \"record_s\": 0, "
-                 "\"peak_bytes\": 1e300}}\n");
-    expectRefused({"report", dir}, dir +
-                                       "/journal.jsonl:1: '/cost/peak_bytes' is number; expected a "
-                                       "whole number\n");
+                 "{\"event\": \"case\", \"case\": \"a\", \"cost\": {\"load_s\": 0, \"setup_s\": 0, "
+                 "\"render_s\": 0, \"record_s\": 0, \"peak_bytes\": 1e300}}\n");
+    expectRefused(
+        {"report", dir},
+        dir + "/journal.jsonl:1: '/cost/peak_bytes' is number; expected a whole number\n");
     folder.write("run/submission.json", "{}");
     with("submission.json", "/units", {1, "x"}, {"submit", "--status", dir},
          "'/run_arguments' is missing");
-    folder.write("run/submission.json",
-                 "{\"run_arguments\": [], \"units\": [1, 1e300], \"array_job\": \"\", "
-                 "\"merge_job\": \"\"}");
+    folder.write(
+        "run/submission.json",
+        "{\"run_arguments\": [], \"units\": [1, 1e300], \"array_job\": \"\", \"merge_job\": \"\"}");
     expectRefused({"submit", "--status", dir},
                   "submission.json: '/units' is array; expected whole numbers below 2^31\n");
     const char* plan = "plan.json";
@@ -436,10 +435,10 @@ TEST_F(Untrusted, ResultsElsewhereDoNotGoOverThoseOfAnotherRun) {
     EXPECT_EQ(contents(out), before);
 
     fs::remove(out + "/made-from.txt");
-    EXPECT_EQ(at({"table", dir}, out).err,
-              "gfxrepro: " + out +
-                  ": has claims.csv, and no made-from.txt says of which run; give "
-                  "another folder\n");
+    EXPECT_EQ(
+        at({"table", dir}, out).err,
+        "gfxrepro: " + out +
+            ": has claims.csv, and no made-from.txt says of which run; give another folder\n");
     EXPECT_THAT(at({"table", dir}, other).err, HasSubstr(": has plan.json, and no made-from.txt"));
     EXPECT_EQ(at({"report", dir}, other + "/report.html").err,
               "gfxrepro: " + other + ": holds another run; give another folder\n");

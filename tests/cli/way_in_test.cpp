@@ -208,8 +208,8 @@ TEST(Completion, FishAsksTheProgram) {
     if (!isInstalled("fish")) GTEST_SKIP() << "no fish here";
     const std::string program = GFXREPRO_PROGRAM;
     const std::string script = "set PATH " + fs::path(program).parent_path().string() +
-                               " $PATH; gfxrepro completion fish | source; "
-                               "complete -C 'gfxrepro run --profile '; complete -C 'gfxrepro rep'";
+                               " $PATH; gfxrepro completion fish | source; complete -C 'gfxrepro "
+                               "run --profile '; complete -C 'gfxrepro rep'";
     EXPECT_EQ(answerOf("fish", script), "full\npaper\nquick\nreport\nreproduce\n");
 }
 

@@ -158,9 +158,8 @@ TEST_F(Weekend, WhatTheRunnerDidNotSurviveTwiceIsNotTriedAgain) {
     killedIn(2, {GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir});
     for (int i = 0; i < 2; ++i) {
         endedWith(4, mockGfxrepro({"run", "--resume", dir}));
-        EXPECT_THAT(statusLines(dir),
-                    Contains("hang: crash (the runner did not survive it, 2 times; "
-                             "resume with --retry to try it again)"));
+        EXPECT_THAT(statusLines(dir), Contains("hang: crash (the runner did not survive it, 2 "
+                                               "times; resume with --retry to try it again)"));
         EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
     }
     BackgroundProgram again({GFXREPRO_MOCK_PROGRAM, "run", "--resume", dir, "--retry"});
@@ -398,8 +397,8 @@ TEST_F(Weekend, FilesOfOthersAreNotWrittenOver) {
     folder.write("work/claims.csv", "my own\n");
     EXPECT_THAT(endedWith(2, shell(mockRun(config, work))).err,
                 EndsWith("gfxrepro: " + work +
-                         ": has a claims.csv that is of no run and would be written over; "
-                         "give another folder\n"));
+                         ": has a claims.csv that is of no run and would be written over; give "
+                         "another folder\n"));
     EXPECT_EQ(readFile(work + "/claims.csv"), "my own\n");
     EXPECT_FALSE(fs::exists(work + "/lock"));
 }

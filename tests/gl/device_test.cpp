@@ -96,12 +96,11 @@ void openWith(const char* variable, const char* value) {
 
 TEST(NoDeviceDeathTest, SaysThatNoDriverIsThere) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
-    EXPECT_EXIT(openWith("__EGL_VENDOR_LIBRARY_FILENAMES", "/none.json"),
-                ::testing::ExitedWithCode(3),
-                "no usable OpenGL 4.5 device for 'software':\n"
-                "  EGL: libEGL found no driver \\(the client extension EGL_EXT_platform_base is "
-                "missing\\); install a GPU driver's EGL, or Mesa's \\(libegl-mesa0\\), which needs "
-                "no GPU");
+    EXPECT_EXIT(
+        openWith("__EGL_VENDOR_LIBRARY_FILENAMES", "/none.json"), ::testing::ExitedWithCode(3),
+        "no usable OpenGL 4.5 device for 'software':\n"
+        "  EGL: libEGL found no driver \\(the client extension EGL_EXT_platform_base is "
+        "missing\\); install a GPU driver's EGL, or Mesa's \\(libegl-mesa0\\), which needs no GPU");
 }
 
 TEST(NoDeviceDeathTest, SaysWhyEveryWayFailed) {
@@ -109,10 +108,10 @@ TEST(NoDeviceDeathTest, SaysWhyEveryWayFailed) {
     if (testDevice() != "software") GTEST_SKIP() << "there may be no software device here";
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     // The software device is Mesa's; what other drivers answer stands before or between.
-    EXPECT_EXIT(openWith("MESA_GL_VERSION_OVERRIDE", "4.1"), ::testing::ExitedWithCode(3),
-                "no usable OpenGL 4.5 device for 'software':\n  device 0 \\(device\\): .*"
-                "  device [0-9]+ \\(surfaceless\\): no OpenGL 4.5 core context "
-                "\\(eglCreateContext: EGL_BAD_MATCH\\)$");
+    EXPECT_EXIT(
+        openWith("MESA_GL_VERSION_OVERRIDE", "4.1"), ::testing::ExitedWithCode(3),
+        "no usable OpenGL 4.5 device for 'software':\n  device 0 \\(device\\): .*  device [0-9]+ "
+        "\\(surfaceless\\): no OpenGL 4.5 core context \\(eglCreateContext: EGL_BAD_MATCH\\)$");
 }
 
 TEST_F(GlTest, ListsDevicesAndKeepsTheCurrentContext) {

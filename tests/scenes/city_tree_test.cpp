@@ -225,41 +225,35 @@ TEST(CityAndTree, BadParametersAreLocated) {
     EXPECT_EQ(refusalOf("city", "{blocks: 4}"),
               "t.yaml:1:10: blocks: 4 is even, which puts a crossing under the city's centre; "
               "allowed: 0 and odd numbers");
-    EXPECT_EQ(
-        refusalOf("city", "{triangles: 20000, blocks: 9}"),
-        "t.yaml:1:28: blocks: 9 × 9 blocks of such buildings have at least 227600 triangles, but "
-        "'triangles' is 20000");
-    EXPECT_EQ(
-        refusalOf("city", "{triangles: 500000, blocks: 1}"),
-        "t.yaml:1:29: blocks: 1 × 1 blocks of such buildings have at most 22338 triangles, but "
-        "'triangles' is 500000");
+    EXPECT_EQ(refusalOf("city", "{triangles: 20000, blocks: 9}"),
+              "t.yaml:1:28: blocks: 9 × 9 blocks of such buildings have at least 227600 triangles, "
+              "but 'triangles' is 20000");
+    EXPECT_EQ(refusalOf("city", "{triangles: 500000, blocks: 1}"),
+              "t.yaml:1:29: blocks: 1 × 1 blocks of such buildings have at most 22338 triangles, "
+              "but 'triangles' is 500000");
     EXPECT_EQ(refusalOf("city", "{building_height: 0.4}"),
               "t.yaml:1:19: generator 'city': building_height is 0.4; allowed: 0.5 … 3");
-    EXPECT_EQ(
-        refusalOf("city", "{streets: 4}"),
-        "t.yaml:1:2: generator 'city': unknown parameter 'streets'; allowed: triangles, blocks, "
-        "building_height");
+    EXPECT_EQ(refusalOf("city", "{streets: 4}"),
+              "t.yaml:1:2: generator 'city': unknown parameter 'streets'; allowed: triangles, "
+              "blocks, building_height");
     EXPECT_EQ(refusalOf("tree", "{triangles: 2000001}"),
               "t.yaml:1:13: generator 'tree': triangles is 2000001; allowed: 10000 … 2000000");
     EXPECT_EQ(refusalOf("tree", "{triangles: 47001}"),
               "t.yaml:1:13: triangles: 47001 is odd, but a leaf has two sides, which takes an even "
               "number");
-    EXPECT_EQ(
-        refusalOf("tree", "{leaves: 30000}"),
-        "t.yaml:1:10: leaves: 30000 take at least 120000 triangles, but 82418 are left of 113000 "
-        "beside wood and ground");
-    EXPECT_EQ(
-        refusalOf("tree", "{leaves: 41210, faces: one}"),
-        "t.yaml:1:10: leaves: 41210 take at least 82420 triangles, but 82418 are left of 113000 "
-        "beside wood and ground");
+    EXPECT_EQ(refusalOf("tree", "{leaves: 30000}"),
+              "t.yaml:1:10: leaves: 30000 take at least 120000 triangles, but 82418 are left of "
+              "113000 beside wood and ground");
+    EXPECT_EQ(refusalOf("tree", "{leaves: 41210, faces: one}"),
+              "t.yaml:1:10: leaves: 41210 take at least 82420 triangles, but 82418 are left of "
+              "113000 beside wood and ground");
     EXPECT_EQ(refusalOf("tree", "{faces: 3}"),
               "t.yaml:1:9: generator 'tree': faces is 3; allowed: one | two");
     EXPECT_EQ(refusalOf("tree", "{leaf_size: 0}"),
               "t.yaml:1:13: generator 'tree': leaf_size is 0; allowed: 0.2 … 5");
-    EXPECT_EQ(
-        refusalOf("tree", "{leafs: 1}"),
-        "t.yaml:1:2: generator 'tree': unknown parameter 'leafs'; allowed: triangles, leaves, "
-        "leaf_size, faces");
+    EXPECT_EQ(refusalOf("tree", "{leafs: 1}"),
+              "t.yaml:1:2: generator 'tree': unknown parameter 'leafs'; allowed: triangles, "
+              "leaves, leaf_size, faces");
     EXPECT_EQ(refusalOf("four_objects", "{triangles: 48}"),
               "t.yaml:1:2: generator 'four_objects': unknown parameter 'triangles'; it has none");
 }

@@ -308,30 +308,25 @@ TEST(NestAndGrass, BadParametersAreLocated) {
     EXPECT_EQ(refusalOf("grass", "{triangles: 9999}"),
               "t.yaml:1:13: generator 'grass': triangles is 9999; allowed: 10000 … 4000000");
     EXPECT_EQ(refusalOf("grass", "{triangles: many}"),
-              "t.yaml:1:13: generator 'grass': triangles is many; allowed: a whole number, 10000 "
-              "… 4000000");
-    EXPECT_EQ(
-        refusalOf("grass", "{triangles: 56001}"),
-        "t.yaml:1:13: triangles: 56001 is odd, but a blade has two sides, which takes an even "
-        "number");
-    EXPECT_EQ(
-        refusalOf("grass", "{blades: 8993}"),
-        "t.yaml:1:10: blades: 8993 take at least 53958 triangles, but 53952 are left of 56000 "
-        "beside the ground");
+              "t.yaml:1:13: generator 'grass': triangles is many; allowed: a whole number, 10000 … "
+              "4000000");
+    EXPECT_EQ(refusalOf("grass", "{triangles: 56001}"),
+              "t.yaml:1:13: triangles: 56001 is odd, but a blade has two sides, which takes an "
+              "even number");
+    EXPECT_EQ(refusalOf("grass", "{blades: 8993}"),
+              "t.yaml:1:10: blades: 8993 take at least 53958 triangles, but 53952 are left of "
+              "56000 beside the ground");
     EXPECT_EQ(refusalOf("grass", "{blade_width: 6}"),
               "t.yaml:1:15: generator 'grass': blade_width is 6; allowed: 0.2 … 5");
-    EXPECT_EQ(
-        refusalOf("grass", "{leaves: 7}"),
-        "t.yaml:1:2: generator 'grass': unknown parameter 'leaves'; allowed: triangles, blades, "
-        "blade_width, blade_triangles");
-    EXPECT_EQ(
-        refusalOf("grass", "{blade_triangles: 7}"),
-        "t.yaml:1:19: blade_triangles: 7 is odd, but a blade has two sides, which takes an even "
-        "number");
-    EXPECT_EQ(
-        refusalOf("grass", "{blades: 6745, blade_triangles: 8}"),
-        "t.yaml:1:10: blades: 6745 take at least 53960 triangles, but 53952 are left of 56000 "
-        "beside the ground");
+    EXPECT_EQ(refusalOf("grass", "{leaves: 7}"),
+              "t.yaml:1:2: generator 'grass': unknown parameter 'leaves'; allowed: triangles, "
+              "blades, blade_width, blade_triangles");
+    EXPECT_EQ(refusalOf("grass", "{blade_triangles: 7}"),
+              "t.yaml:1:19: blade_triangles: 7 is odd, but a blade has two sides, which takes an "
+              "even number");
+    EXPECT_EQ(refusalOf("grass", "{blades: 6745, blade_triangles: 8}"),
+              "t.yaml:1:10: blades: 6745 take at least 53960 triangles, but 53952 are left of "
+              "56000 beside the ground");
     EXPECT_EQ(refusalOf("bird_nest", "{twigs: 5000}"),
               "t.yaml:1:9: twigs: 5000 take at least 70000 triangles, but 64404 are left of 67000 "
               "beside eggs and branch");

@@ -137,16 +137,13 @@ TEST(Generators, StretchKeepsTheCounts) {
 TEST(Generators, BadParametersAreLocated) {
     EXPECT_EQ(errorText([] { sampled("{shape: sphere, triangles: 1001}"); }),
               "t.yaml:1:28: triangles: 1001 is odd, but a closed surface has an even number");
-    EXPECT_EQ(
-        errorText([] { sampled("{shape: sphere, triangles: 1200, vertices: 100}"); }),
-        "t.yaml:1:44: vertices: 100 cannot be had with 1200 triangles of this shape; allowed: 0 or "
-        "602 to 3600");
-    EXPECT_EQ(
-        errorText([] { sampled("{shape: dargon}"); }),
-        "t.yaml:1:9: generator 'sdf_model': shape is dargon; allowed: blade | brain | buddha | "
-        "bunny | dragon | duck | hand | head | hip | hugo | linked_tori | lion | sphere | "
-        "torus | "
-        "wagner");
+    EXPECT_EQ(errorText([] { sampled("{shape: sphere, triangles: 1200, vertices: 100}"); }),
+              "t.yaml:1:44: vertices: 100 cannot be had with 1200 triangles of this shape; "
+              "allowed: 0 or 602 to 3600");
+    EXPECT_EQ(errorText([] { sampled("{shape: dargon}"); }),
+              "t.yaml:1:9: generator 'sdf_model': shape is dargon; allowed: blade | brain | buddha "
+              "| bunny | dragon | duck | hand | head | hip | hugo | linked_tori | lion | sphere | "
+              "torus | wagner");
     EXPECT_EQ(errorText([] { sampled("{stretch: [1, 0, 1]}"); }),
               "t.yaml:1:11: generator 'sdf_model': stretch is [1, 0, 1]; allowed: a list of 3 "
               "numbers, each 0.1 … 10");
@@ -157,8 +154,8 @@ TEST(Generators, BadParametersAreLocated) {
                   findGenerator(registeredGenerators(), "sdf_modle", {"s.yaml", 4, 9});
               }),
               "s.yaml:4:9: unknown generator 'sdf_modle'; did you mean 'sdf_model'? (there are: "
-              "bathroom, bird_nest, city, four_objects, grass, living_room, "
-              "object_on_plane, sdf_model, terrain, town_square, tree)");
+              "bathroom, bird_nest, city, four_objects, grass, living_room, object_on_plane, "
+              "sdf_model, terrain, town_square, tree)");
 }
 
 }  // namespace

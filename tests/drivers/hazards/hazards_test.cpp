@@ -59,9 +59,8 @@ TEST_F(Hazards, AWriteIsNotSeenWithoutItsBarrier) {
     glFinish();
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
     dispatch(read);
-    EXPECT_THAT(hazards::take(),
-                ElementsAre("read.comp.glsl: From is what write.comp.glsl wrote, without "
-                            "GL_SHADER_STORAGE_BARRIER_BIT"));
+    EXPECT_THAT(hazards::take(), ElementsAre("read.comp.glsl: From is what write.comp.glsl wrote, "
+                                             "without GL_SHADER_STORAGE_BARRIER_BIT"));
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
     dispatch(write);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
@@ -77,8 +76,10 @@ TEST_F(Hazards, AWriteDoesNotWaitForReadsWithoutItsBarrier) {
     second.bindStorage(1);
     dispatch(read);
     dispatch(write);
-    EXPECT_THAT(hazards::take(), ElementsAre("write.comp.glsl: To is written behind reads, without "
-                                             "GL_SHADER_STORAGE_BARRIER_BIT"));
+    EXPECT_THAT(
+        hazards::take(),
+        ElementsAre(
+            "write.comp.glsl: To is written behind reads, without GL_SHADER_STORAGE_BARRIER_BIT"));
     dispatch(write);  // goes on
     EXPECT_THAT(hazards::take(), IsEmpty());
 }
@@ -108,12 +109,11 @@ TEST_F(Hazards, CommandsNeedBarriersOfTheirOwn) {
     writeAll();
     arguments.write<std::uint32_t>(ones);
     arguments.clear();
-    EXPECT_THAT(hazards::take(), ElementsAre("glNamedBufferSubData: the buffer is what "
-                                             "write.comp.glsl wrote, without "
-                                             "GL_BUFFER_UPDATE_BARRIER_BIT",
-                                             "glClearNamedBufferData: the buffer is what "
-                                             "write.comp.glsl wrote, without "
-                                             "GL_BUFFER_UPDATE_BARRIER_BIT"));
+    EXPECT_THAT(hazards::take(),
+                ElementsAre("glNamedBufferSubData: the buffer is what write.comp.glsl wrote, "
+                            "without GL_BUFFER_UPDATE_BARRIER_BIT",
+                            "glClearNamedBufferData: the buffer is what write.comp.glsl wrote, "
+                            "without GL_BUFFER_UPDATE_BARRIER_BIT"));
     arguments.clear();  // behind which there is no write of a shader
     arguments.read<std::uint32_t>(1);
     EXPECT_THAT(hazards::take(), IsEmpty());
@@ -123,8 +123,8 @@ TEST_F(Hazards, CommandsNeedBarriersOfTheirOwn) {
     first.bindStorage(0);
     glDispatchComputeIndirect(0);
     EXPECT_THAT(hazards::take(),
-                ElementsAre("write.comp.glsl: the arguments is what write.comp.glsl wrote, "
-                            "without GL_COMMAND_BARRIER_BIT"));
+                ElementsAre("write.comp.glsl: the arguments is what write.comp.glsl wrote, without "
+                            "GL_COMMAND_BARRIER_BIT"));
     glMemoryBarrier(GL_COMMAND_BARRIER_BIT);
     glDispatchComputeIndirect(0);
     EXPECT_THAT(hazards::take(), IsEmpty());
@@ -226,8 +226,10 @@ void main() { value = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r; }
     depth.bind(0);
     glEnable(GL_DEPTH_TEST);
     draw(sample);
-    EXPECT_THAT(hazards::take(), ElementsAre("f.frag.glsl + whole.vert.glsl: depth is drawn into, "
-                                             "without glTextureBarrier"));
+    EXPECT_THAT(
+        hazards::take(),
+        ElementsAre(
+            "f.frag.glsl + whole.vert.glsl: depth is drawn into, without glTextureBarrier"));
     glTextureBarrier();
     glDepthMask(GL_FALSE);
     draw(sample);
@@ -280,8 +282,8 @@ void main() { to[0] = scale; }
     const gl::Framebuffer nothing = gl::Framebuffer::withoutAttachments({1, 1});
     nothing.bind();
     draw(sample);
-    EXPECT_THAT(hazards::take(), ElementsAre("f.frag.glsl + whole.vert.glsl: the sampler picture "
-                                             "has no texture"));
+    EXPECT_THAT(hazards::take(),
+                ElementsAre("f.frag.glsl + whole.vert.glsl: the sampler picture has no texture"));
     first.bindStorage(0);
     dispatch(scaled);
     EXPECT_THAT(hazards::take(), ElementsAre("scaled.comp.glsl: the block Scale has no buffer"));

@@ -155,11 +155,10 @@ TEST_F(ClusteredReflectionsTest, RefusesScenesWithoutReflectorsAndUnknownViews) 
               "scene 'room' has no reflectors: no material's roughness is at most 0.4; "
               "'reflector_roughness: 1' takes them all");
     const scene::Scene room = roomWithMirror();
-    EXPECT_EQ(
-        message("{view: path_1}", &room),
-        "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'; or "
-        "'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' "
-        "a path");
+    EXPECT_EQ(message("{view: path_1}", &room),
+              "the scene has no path or camera 'path_1'; paths: none; cameras: 'front', 'ceiling'; "
+              "or 'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such "
+              "behind ';' a path");
 }
 
 TEST_F(ClusteredReflectionsTest, EveryMethodRecordsSharesMemoryAndErrors) {
@@ -336,10 +335,11 @@ TEST_F(ClusteredReflectionsTest, ViewsWithoutReflectorsHaveNoErrors) {
         testing::internal::CaptureStderr();
         const Metrics metrics =
             run(fmt::format("{{method: {}, view: ceiling, pictures: true}}", method), scene);
-        EXPECT_EQ(testing::internal::GetCapturedStderr(),
-                  fmt::format("warning: scene '{}': a frame shows no reflector; no errors are "
-                              "measured of it\n",
-                              scene.name));
+        EXPECT_EQ(
+            testing::internal::GetCapturedStderr(),
+            fmt::format(
+                "warning: scene '{}': a frame shows no reflector; no errors are measured of it\n",
+                scene.name));
         EXPECT_EQ(metrics.at("reflective_pct"), 0.0);
         EXPECT_EQ(metrics.at("visible_reflectors"), 0.0);
         for (const char* error :

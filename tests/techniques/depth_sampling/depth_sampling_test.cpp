@@ -134,9 +134,9 @@ TEST_F(DepthSamplingTest, NeedsASceneWithTriangles) {
 TEST_F(DepthSamplingTest, CoincidingViewsPeelAnalyticLayers) {
     const scene::Scene scene = cardBeforeWall();
     for (const std::string redundancy : {"pixel", "visibility"}) {
-        const std::string common = ", redundancy: " + redundancy +
-                                   ", view_spread: 0, usefulness: true, availability: true, "
-                                   "output_frames: 3}";
+        const std::string common =
+            ", redundancy: " + redundancy +
+            ", view_spread: 0, usefulness: true, availability: true, output_frames: 3}";
         const Metrics peeled = run("{method: depth_peeling" + common, scene);
         EXPECT_EQ(peeled.at("samples/image_0"), 96 * 96) << redundancy;
         EXPECT_EQ(peeled.at("samples/image_1"), 32 * 32) << redundancy;
@@ -199,10 +199,10 @@ TEST_F(DepthSamplingTest, MeasuresKeepTheirBounds) {
     for (const std::string redundancy : {"pixel", "visibility"}) {
         std::map<std::string, Metrics> of;
         for (const std::string method : {"conventional", "non_redundant", "depth_peeling"}) {
-            of[method] = run("{method: " + method + ", redundancy: " + redundancy +
-                                 ", usefulness: true, availability: true, output_frames: 20, "
-                                 "frame_size: 48}",
-                             scene);
+            of[method] = run(
+                "{method: " + method + ", redundancy: " + redundancy +
+                    ", usefulness: true, availability: true, output_frames: 20, frame_size: 48}",
+                scene);
             const Metrics& metrics = of[method];
             double usefulSumPct = 0.0;
             for (const char* pass : {"/image_0", "/image_1", "/image_2"}) {
@@ -258,8 +258,8 @@ TEST_F(DepthSamplingTest, AutomaticPlacementFindsWhatTheEndsMiss) {
     scene::Scene scene = scene::sceneOf(builder.take("hole", -1));
     scene.cameras = {lookingAt({0, 0, 3}, {0, 0, 0})};
     const std::string common =
-        "{method: conventional, views: 2, view_spread: 0.6, availability: true, output_frames: "
-        "40, placement: ";
+        "{method: conventional, views: 2, view_spread: 0.6, availability: true, output_frames: 40, "
+        "placement: ";
     const Metrics fixed = run(common + "fixed}", scene);
     const Metrics automatic = run(common + "automatic}", scene);
     EXPECT_LT(automatic.at("unavailable_mean_pct"), 0.8 * fixed.at("unavailable_mean_pct"));
@@ -370,11 +370,11 @@ TEST_F(DepthSamplingTest, TimesImagesOrOneOutputFrame) {
 TEST_F(DepthSamplingTest, SavesPictures) {
     const scene::Scene scene = clutter();
     for (const char* redundancy : {"pixel", "visibility"}) {
-        const test::MetricRecorder recorder = recorded(
-            std::string("{views: 2, method: non_redundant, usefulness: true, pictures: true, "
-                        "output_frames: 2, frame_size: 40, redundancy: ") +
-                redundancy + "}",
-            &scene);
+        const test::MetricRecorder recorder =
+            recorded(std::string("{views: 2, method: non_redundant, usefulness: true, pictures: "
+                                 "true, output_frames: 2, frame_size: 40, redundancy: ") +
+                         redundancy + "}",
+                     &scene);
         for (const char* name : {"image_0", "image_1", "classes_0", "classes_1"}) {
             EXPECT_EQ(recorder.images.at(name).width(), 96) << redundancy << name;
         }

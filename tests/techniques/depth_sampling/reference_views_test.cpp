@@ -142,9 +142,9 @@ TEST(ReferenceViewsTest, CandidatesBeginWithTheFixedViewsAndAreNoOutputFrames) {
 TEST(ReferenceViewsTest, RefusesToLookAlongUp) {
     scene::Scene scene = boxScene({-1, 0, -2}, {1, 2, 2});
     scene.cameras[0].position = {0, 9, 0};
-    EXPECT_EQ(errorText([&] { makeViewTriangle(scene, {}); }),
-              "the camera at (0, 9, 0) looks along its up direction; change 'view' or "
-              "'view_pitch_deg'");
+    EXPECT_EQ(
+        errorText([&] { makeViewTriangle(scene, {}); }),
+        "the camera at (0, 9, 0) looks along its up direction; change 'view' or 'view_pitch_deg'");
 }
 
 }  // namespace

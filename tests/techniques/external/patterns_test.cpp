@@ -52,14 +52,13 @@ TEST(Patterns, ALineThatAPatternCannotSearchIsAnError) {
                                                          {"(a=1).*\\1", "t=([0-9.]+)"},
                                                          {"a=(\\d)(?=.*m)", "t=([0-9.]+)"}};
     for (const auto& [regex, allowed] : cases) {
-        EXPECT_EQ(
-            errorText([&] {
-                numberIn(line, {"m", regex});
-            }),
-            "metric 'm': a line of 5010 bytes, more than 4096, is searched by no pattern that "
-            "matches more than 4096, looks ahead or refers back to a group; allowed: what stands "
-            "beside the number alone, as '" +
-                std::string(allowed) + "'")
+        EXPECT_EQ(errorText([&] {
+                      numberIn(line, {"m", regex});
+                  }),
+                  "metric 'm': a line of 5010 bytes, more than 4096, is searched by no pattern "
+                  "that matches more than 4096, looks ahead or refers back to a group; allowed: "
+                  "what stands beside the number alone, as '" +
+                      std::string(allowed) + "'")
             << regex;
     }
 }
@@ -436,13 +435,14 @@ TEST(Patterns, RefuseWhatMayBeAPartAndSayHowItIsRead) {
         const std::string before(each.before), behind(each.behind);
         const std::string both = before.empty() || behind.empty() ? "" : " and ";
         const std::string better = before + behind;
-        EXPECT_EQ(errorOfPattern(each.regex, each.line, each.scale),
-                  fmt::format("metric 'm': its pattern finds '{}' of '{}'; allowed: a whole "
-                              "number{}{}{}{}{}",
-                              each.found, each.whole, better.empty() ? "" : ", or a pattern with ",
-                              before.empty() ? "" : "'" + before + "' before", both,
-                              behind.empty() ? "" : "'" + behind + "' behind",
-                              better.empty() ? "" : " its group"));
+        EXPECT_EQ(
+            errorOfPattern(each.regex, each.line, each.scale),
+            fmt::format(
+                "metric 'm': its pattern finds '{}' of '{}'; allowed: a whole number{}{}{}{}{}",
+                each.found, each.whole, better.empty() ? "" : ", or a pattern with ",
+                before.empty() ? "" : "'" + before + "' before", both,
+                behind.empty() ? "" : "'" + behind + "' behind",
+                better.empty() ? "" : " its group"));
         if (better.empty()) continue;
         // In the place of what the pattern has there, it is read; a mark before its digits may be
         // none of the number.

@@ -51,9 +51,9 @@ TEST(MetricLines, RefusesOthersByTheirNumber) {
               "line 1 of its metrics: \"metric\" is 7; allowed: text");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"frame\": 1, \"value\": 1, \"unit\": \"ray\"}"),
               "line 1 of its metrics: \"frame\" is 1; it was asked for frame 0");
-    EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"vlaue\": 1, \"unit\": \"ray\"}"),
-              "line 1 of its metrics: unknown key \"vlaue\"; allowed: metric, pass, frame, value, "
-              "unit");
+    EXPECT_EQ(
+        errorOf("{\"metric\": \"rays\", \"vlaue\": 1, \"unit\": \"ray\"}"),
+        "line 1 of its metrics: unknown key \"vlaue\"; allowed: metric, pass, frame, value, unit");
     EXPECT_EQ(errorOf("{\"metric\": \"rays\", \"value\": 1, \"value\": 2, \"unit\": \"ray\"}"),
               "line 1 of its metrics has \"value\" twice: {\"metric\": \"rays\", \"value\": 1, "
               "\"value\": 2, \"unit\": \"ray\"}");
@@ -214,10 +214,9 @@ TEST_F(Pictures, OfSeveralSeedsAreTestedForOneExpectation) {
 TEST_F(Pictures, RefusesATruthOfAnotherKind) {
     const Picture exr = readPicture(writeExr(folder, "t.exr", ImageF(16, 16, 3, 0.5F)), "t");
     const Picture png = readPicture(writePng(folder, "p.png", 16, 51), "p");
-    EXPECT_EQ(
-        errorText([&] { requireOneKind(png, exr, "result"); }),
-        "image 'result': one of it and its truth is linear, as EXR files are, the other sRGB, "
-        "as PNG files are");
+    EXPECT_EQ(errorText([&] { requireOneKind(png, exr, "result"); }),
+              "image 'result': one of it and its truth is linear, as EXR files are, the other "
+              "sRGB, as PNG files are");
 }
 
 }  // namespace

@@ -134,10 +134,11 @@ TEST_F(PointSplattingTest, EveryMethodRunsAndRecords) {
 TEST_F(PointSplattingTest, PlainPointsAreAsManyAsSpritesAndAPixelEach) {
     const scene::Scene scene = bumpySphere(20000);
     const auto drawn = [&](const char* method) {
-        return recorded(fmt::format("{{method: {}, level: all, cache: false, pictures: true, "
-                                    "points_per_second: true}}",
-                                    method),
-                        &scene);
+        return recorded(
+            fmt::format(
+                "{{method: {}, level: all, cache: false, pictures: true, points_per_second: true}}",
+                method),
+            &scene);
     };
     const test::MetricRecorder plain = drawn("plain_points");
     EXPECT_EQ(passes_, (std::vector<std::string>{"selection", "points"}));
@@ -381,8 +382,7 @@ TEST_F(PointSplattingTest, DrawsOnePointAndManyAtOnePlace) {
     for (const char* method : {"adaptive", "full_ewa", "reconstruction", "low_pass", "sprites"}) {
         SCOPED_TRACE(method);
         const std::string yaml = fmt::format(
-            "{{method: {}, cache: false, pictures: true, errors: true, "
-            "compression_errors: true}}",
+            "{{method: {}, cache: false, pictures: true, errors: true, compression_errors: true}}",
             method);
         const test::MetricRecorder single = recorded(yaml, &one);
         EXPECT_EQ(single.metrics.at("points"), 1.0);
@@ -444,10 +444,10 @@ TEST_F(PointSplattingTest, TakesCamerasAndPathsOfTheScene) {
     camera.name.clear();
     scene.paths = {{"walk", {camera}}};
     EXPECT_EQ(coveredPixels(seen("walk")), covered);
-    EXPECT_EQ(errorText([&] { seen("none"); }),
-              "the scene has no path or camera 'none'; paths: 'walk'; cameras: 'far'; or 'AZIMUTH "
-              "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a "
-              "path");
+    EXPECT_EQ(
+        errorText([&] { seen("none"); }),
+        "the scene has no path or camera 'none'; paths: 'walk'; cameras: 'far'; or 'AZIMUTH "
+        "ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more such behind ';' a path");
 }
 
 TEST(TurntableCamera, HoldsTheBoxFromEverySide) {

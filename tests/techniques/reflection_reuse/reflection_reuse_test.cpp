@@ -213,10 +213,11 @@ TEST_F(ReflectionReuseTest, GatheringTakesNoMatchingLessMemoryAndErrsLess) {
 
 TEST_F(ReflectionReuseTest, CountsDoNotDependOnTheTracer) {
     const auto countsOf = [&](const char* tracer) {
-        return recorded(fmt::format("{{view: walk, tracer: {}, path_frames: 12, threshold: 0.1, "
-                                    "errors: false}}",
-                                    tracer),
-                        &room_, 8);
+        return recorded(
+            fmt::format(
+                "{{view: walk, tracer: {}, path_frames: 12, threshold: 0.1, errors: false}}",
+                tracer),
+            &room_, 8);
     };
     const auto embree = countsOf("embree"), compute = countsOf("compute");
     EXPECT_EQ(kindsOf(embree), kindsOf(compute));
@@ -257,11 +258,11 @@ TEST_F(ReflectionReuseTest, RayTracingIsTheTruth) {
 // own technique.
 TEST_F(ReflectionReuseTest, RayTracesAFrameAsClusteredReflectionsDoes) {
     for (const bool byEmbree : {false, true}) {
-        const test::MetricRecorder here = recorded(
-            fmt::format("{{method: ray_traced, tracer: {}, blend: reflectivity, view: rest, "
-                        "pictures: true}}",
-                        byEmbree ? "embree" : "compute"),
-            &room_, 1)[0];
+        const test::MetricRecorder here =
+            recorded(fmt::format("{{method: ray_traced, tracer: {}, blend: reflectivity, view: "
+                                 "rest, pictures: true}}",
+                                 byEmbree ? "embree" : "compute"),
+                     &room_, 1)[0];
         const test::MetricRecorder there =
             recorded(fmt::format("{{method: {}, supersampling: 1, view: rest, pictures: true}}",
                                  byEmbree ? "embree" : "ray_traced"),
@@ -295,11 +296,11 @@ TEST_F(ReflectionReuseTest, ACameraAtRestRecomputesNothing) {
 
 TEST_F(ReflectionReuseTest, ReuseIsNearerToTheTruthThanDirectReprojection) {
     const auto error = [&](const char* method) {
-        return meanOf(recorded(fmt::format("{{method: {}, tracer: embree, threshold: 1, "
-                                           "path_frames: 12}}",
-                                           method),
-                               &room_, 8),
-                      "channel_error");
+        return meanOf(
+            recorded(fmt::format("{{method: {}, tracer: embree, threshold: 1, path_frames: 12}}",
+                                 method),
+                     &room_, 8),
+            "channel_error");
     };
     // Both resample stripes of few pixels; where they are is what reuse has right.
     EXPECT_LT(1.25 * error("reuse"), error("direct"));
@@ -399,11 +400,13 @@ TEST_F(ReflectionReuseTest, ViewsWithoutReflectorsRecordNothingReflected) {
 
 TEST_F(ReflectionReuseTest, ObjectsThatMoveLeaveGhosts) {
     const auto error = [&](const char* motion) {
-        return meanOf(recorded(fmt::format("{{view: rest, motion: {}, tracer: embree, "
-                                           "threshold: 1, path_frames: 40}}",
-                                           motion),
-                               &room_, 5),
-                      "channel_error");
+        return meanOf(
+            recorded(
+                fmt::format(
+                    "{{view: rest, motion: {}, tracer: embree, threshold: 1, path_frames: 40}}",
+                    motion),
+                &room_, 5),
+            "channel_error");
     };
     const double ghosts = error("true");
     EXPECT_GT(ghosts, 0.1);

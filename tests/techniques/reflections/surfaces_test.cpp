@@ -210,9 +210,9 @@ TEST(ReflectiveSceneTest, HangsALightWhereThereIsNone) {
     ASSERT_EQ(without.lights().size(), 1U);
     EXPECT_EQ(without.lights()[0].position, glm::vec3(0.0F, 0.9F, 0.0F));
     EXPECT_FLOAT_EQ(without.lights()[0].radiusM, std::sqrt(2.0F));
-    EXPECT_EQ(without.warnings(), std::vector<std::string>{
-                                      "scene 'test': it has no light; one is hung below the top of "
-                                      "its box (what shines lights nothing)"});
+    EXPECT_EQ(without.warnings(),
+              std::vector<std::string>{"scene 'test': it has no light; one is hung below the top "
+                                       "of its box (what shines lights nothing)"});
     for (int i = 0; i < kMaxLights; ++i) {
         scene.lights.push_back({.radiusM = 1.0F + static_cast<float>(i)});
     }

@@ -77,11 +77,11 @@ TEST_F(ShadowMappingTest, TheYardstickIsOnePassMore) {
 }
 
 TEST_F(ShadowMappingTest, VarianceIsWrongAtEdgesOnly) {
-    auto m = recorded(
-                 "{method: standard, filter: variance, shadow_map_size: 128, bias: 0.01, errors: "
-                 "true}",
-                 &scene_)
-                 .metrics;
+    auto m =
+        recorded(
+            "{method: standard, filter: variance, shadow_map_size: 128, bias: 0.01, errors: true}",
+            &scene_)
+            .metrics;
     EXPECT_EQ(m["acne_pct"], 0.0);
     EXPECT_LT(m["leak_pct"], 0.1);
     EXPECT_GT(m["edge_pct"], 0.0);

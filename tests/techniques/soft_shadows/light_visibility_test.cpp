@@ -279,10 +279,10 @@ TEST(AreaLight, PixelsFromItsCornersChangeWithItsElevationWithoutAJump) {
 TEST(AreaLight, APlaneThroughTheSceneIsRefused) {
     const scene::Box box{{-1, 0, -1}, {1, 1, 1}};
     const AreaLight light = makeAreaLight(box, {.height = 0.1F, .azimuthRad = 0.0F});
-    EXPECT_EQ(errorText([&] { lightView(light, light.centre, 64); }),
-              "the scene's box comes within -0.661 m of the plane of the light's view from "
-              "(0, 0.752, 0.162), at least 0.15 are needed (a twentieth of its diagonal): raise "
-              "light_height");
+    EXPECT_EQ(
+        errorText([&] { lightView(light, light.centre, 64); }),
+        "the scene's box comes within -0.661 m of the plane of the light's view from (0, 0.752, "
+        "0.162), at least 0.15 are needed (a twentieth of its diagonal): raise light_height");
     const AreaLight near = makeAreaLight(box, {.height = 0.216F, .elevationRad = 1.5707963F});
     EXPECT_EQ(errorText([&] { lightView(near, near.centre, 64); }).substr(0, 43),
               "the scene's box comes within 0.148 m of the");

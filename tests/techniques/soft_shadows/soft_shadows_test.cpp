@@ -141,10 +141,10 @@ TEST_F(SoftShadowsTest, RefusesScenesThatCastNothingAndLightsInside) {
               "the light reaches below the floor: raise light_height or light_elevation_deg, lower "
               "light_ratio, or 'ground: false'");
     if (device.limits().maxTextureSizePx >= 32768) GTEST_SKIP() << "no size is too large here";
-    EXPECT_EQ(message("{reference_size: 32768}", &plate),
-              fmt::format("a 2D texture of 32768 pixels is beyond this device's "
-                          "GL_MAX_TEXTURE_SIZE = {}",
-                          device.limits().maxTextureSizePx));
+    EXPECT_EQ(
+        message("{reference_size: 32768}", &plate),
+        fmt::format("a 2D texture of 32768 pixels is beyond this device's GL_MAX_TEXTURE_SIZE = {}",
+                    device.limits().maxTextureSizePx));
 }
 
 TEST_F(SoftShadowsTest, APictureOfNothingIsRefusedAndTheShareOfOneIsRecorded) {
@@ -435,8 +435,8 @@ TEST_F(SoftShadowsTest, StripsUnderASmallLightAreAsDarkAndLitAsTheirPixelsSay) {
             SCOPED_TRACE(fmt::format("{} {}", method, ratio));
             const Metrics metrics =
                 recorded(fmt::format("{{method: {}, light_ratio: {}, light_elevation_deg: 90, "
-                                     "light_azimuth_deg: 0, light_grid: 1, "
-                                     "reference_size: {}, shadow_map_size: 2048, ground: false}}",
+                                     "light_azimuth_deg: 0, light_grid: 1, reference_size: {}, "
+                                     "shadow_map_size: 2048, ground: false}}",
                                      method, ratio, kReferenceSize),
                          &scene)
                     .metrics;

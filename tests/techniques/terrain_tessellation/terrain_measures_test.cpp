@@ -216,16 +216,14 @@ TEST(TerrainViewsTest, StandsWhereAUserSays) {
     EXPECT_GT(from(path, 1, 2).position.x, 50.0F);
     // Its near plane is a tenth of what lies between the eye and the ground.
     EXPECT_FLOAT_EQ(from("160 48.5 160 > 300 64 160").nearM, 0.05F);
-    EXPECT_EQ(
-        refused("160 48 160 > 300 64 160"),
-        "view '160 48 160 > 300 64 160': the eye at 160 48 160 lies under the ground; allowed "
-        "there: above 48");
+    EXPECT_EQ(refused("160 48 160 > 300 64 160"),
+              "view '160 48 160 > 300 64 160': the eye at 160 48 160 lies under the ground; "
+              "allowed there: above 48");
     EXPECT_THAT(refused(path + "; 160 47 160 > 300 64 160"),
                 HasSubstr("lies under the ground; allowed there: above 4"));
     EXPECT_EQ(from("-20 10 160 > 300 64 160").position.x, -20.0F);
     EXPECT_THAT(refused("-20 0 160 > 300 64 160"),
-                HasSubstr("the eye at -20 0 160 lies under the ground; allowed there: "
-                          "above 0"));
+                HasSubstr("the eye at -20 0 160 lies under the ground; allowed there: above 0"));
     EXPECT_THAT(refused("30 -60"), HasSubstr("lies under the ground"));
 }
 

@@ -96,10 +96,9 @@ TEST_F(TerrainTessellationTest, TheTruthOfAViewIsMadeOnce) {
 
 TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {
     scene::Scene scene = terrain({129, 129}, 0.0F);  // flat: one light for all
-    EXPECT_EQ(
-        errorText([&] { measured("shading: colour_map", scene); }),
-        "'shading: colour_map' needs a scene with a colour map; sources of height maps take one "
-        "as 'colour_map'");
+    EXPECT_EQ(errorText([&] { measured("shading: colour_map", scene); }),
+              "'shading: colour_map' needs a scene with a colour map; sources of height maps take "
+              "one as 'colour_map'");
     // Red in the north-west, green in the north-east, blue in the south.
     image::Image8 map(2, 2, 3);
     map.at(0, 0, 0) = map.at(1, 0, 1) = map.at(0, 1, 2) = map.at(1, 1, 2) = 255;
@@ -347,8 +346,8 @@ TEST_F(TerrainTessellationTest, DrawsWhatAUsersViewHolds) {
     for (const float eyeM : {3000.0F, 6000.0F}) {
         for (const char* method : {"adaptive", "uniform_grid", "cdlod"}) {
             const image::ImageF picture =
-                recorded(fmt::format("{{cache: false, pictures: true, method: {}, "
-                                     "view: 640 {} 640 > 640 0 640}}",
+                recorded(fmt::format("{{cache: false, pictures: true, method: {}, view: 640 {} 640 "
+                                     "> 640 0 640}}",
                                      method, eyeM),
                          &plain)
                     .images.at("image");

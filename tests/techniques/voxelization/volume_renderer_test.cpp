@@ -318,9 +318,9 @@ TEST(CameraOfVoxels, IsAsAllTechniquesTakeIt) {
     EXPECT_EQ(errorText([&] { from("0 3 5 > 1 3 5"); }),
               "view '0 3 5 > 1 3 5': the eye lies within the grid, from -2 1 3 to 2 5 7; allowed: "
               "one outside of it");
-    EXPECT_THAT(errorText([&] { from("window"); }),
-                StartsWith("the scene has no path or camera 'window'; paths: none; "
-                           "cameras: 'door'"));
+    EXPECT_THAT(
+        errorText([&] { from("window"); }),
+        StartsWith("the scene has no path or camera 'window'; paths: none; cameras: 'door'"));
 }
 
 // As large as it fits, the eye outside of a grid that is longer than it needs; what is flat is seen

@@ -83,8 +83,7 @@ TEST(VoxelizationParamsTest, RefusesWhatMeansNothing) {
             {"box_min: [0, 0, 0]", "10: box_min and box_max must be given together"},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 1]}",
              "31: the box must be cubic and not be empty; it is 1 × 2 × 1; allowed with 'grid: "
-             "box': "
-             "any other"},
+             "box': any other"},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 1], grid: box}", ""},
             {"{box_min: [0, 0, 0], box_max: [1, 2, 0], grid: box}",
              "31: the box must not be empty; it is 1 × 2 × 0"},
@@ -179,8 +178,7 @@ TEST_F(VoxelizationTest, ABoxHoldsTheVoxelsOfTheCube) {
     EXPECT_EQ(torus.at("grid_voxels"), 100.0 * 100 * 30);
     const auto given =
         run("{input: implicit, formula: z - 0.5, resolution: 40, grid: box, box_min: [0, 0, 0], "
-            "box_max: "
-            "[4, 2.05, 1]}",
+            "box_max: [4, 2.05, 1]}",
             {});
     EXPECT_EQ(given.at("grid_voxels"), 40.0 * 21 * 10);
     EXPECT_EQ(given.at("voxels"), 40.0 * 21 * 2);  // on the face between two layers
@@ -208,10 +206,10 @@ TEST_F(VoxelizationTest, IsThinUnlessAskedOtherwise) {
 TEST_F(VoxelizationTest, CountsStrayVoxels) {
     const scene::Scene plate =
         scene::sceneOf(shapes::cube(glm::vec3(4, 4, 10.2F), glm::vec3(14, 14, 10.4F)));
-    const auto metrics = run(
-        "{resolution: 32, fill: solid, fill_rule: surface_voxels, compare: true, box_min: [0, 0, "
-        "0], box_max: [32, 32, 32]}",
-        plate);
+    const auto metrics =
+        run("{resolution: 32, fill: solid, fill_rule: surface_voxels, compare: true, box_min: [0, "
+            "0, 0], box_max: [32, 32, 32]}",
+            plate);
     EXPECT_EQ(metrics.at("voxels"), 2200.0);
     EXPECT_EQ(metrics.at("added_solid_voxels"), 2200.0);
     EXPECT_EQ(metrics.at("stray_voxels"), 2100.0);  // without the plate's own voxels

@@ -239,9 +239,9 @@ TEST(Claims, AReasonMayBeOfScenesOfFilesOrOfGeneratedOnesAlone) {
     const auto judged = [&](const std::map<std::string, std::string>& sceneClasses) {
         ReportContext context = kSoftware;
         context.sceneClasses = sceneClasses;
-        return judgeOne(powersBody("bound: a, at_most: 8, because: {verdict: fails, scenes: "
-                                   "files, reason: r}"),
-                        records, context);
+        return judgeOne(
+            powersBody("bound: a, at_most: 8, because: {verdict: fails, scenes: files, reason: r}"),
+            records, context);
     };
     EXPECT_EQ(judged({{"zju2005/9.9", "files"}}).known, Verdict::Fails);
     EXPECT_TRUE(judged({{"zju2005/9.9", "files"}}).isNews());
@@ -273,9 +273,8 @@ std::string provenanceError(const std::string& claim, bool isSweep = false, int 
     config::Experiment experiment = tables::experimentFrom(
         "measure: {lane: timing, processes: " + std::to_string(processes) +
         "}\nsweep: {scene: [s, t]}\nlayout: {axes: {e: {slow: {metric: gpu_time_ms}, much: "
-        "{metric: "
-        "bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, n: "
-        "{metric: bytes}}}\nclaims:\n  C: {says: s, " +
+        "{metric: bytes}, often: {metric: frame_rate}}}, rows: [scene, e], columns: {a: {pass: p}, "
+        "n: {metric: bytes}}}\nclaims:\n  C: {says: s, " +
         claim + "}\n");
     if (isSweep) experiment.kind = config::ExperimentKind::Sweep;
     return refusalOf(experiment);
@@ -288,11 +287,11 @@ TEST(Claims, WhatReadsATimeHasAKind) {
         "claim 'C' has its bound from print, and the table has no printed values: text | ours");
     EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: slow}, origin: document"),
               "claim 'C' reads a time and needs 'kind': algorithmic | architectural");
-    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: slow}, origin: document, kind: "
-                              "algorithmic"),
+    EXPECT_EQ(provenanceError(
+                  "order: [scene=s, scene=t], at: {e: slow}, origin: document, kind: algorithmic"),
               "no error");
-    EXPECT_EQ(provenanceError("order: [scene=s, scene=t], at: {e: much}, origin: document, kind: "
-                              "algorithmic"),
+    EXPECT_EQ(provenanceError(
+                  "order: [scene=s, scene=t], at: {e: much}, origin: document, kind: algorithmic"),
               "claim 'C' has a 'kind' and reads no time");
     const std::string isAbsolute =
         "claim 'C' holds a time against a number, which neither a count of work nor another "
@@ -300,9 +299,9 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     const std::string ofTime = ", at: {e: slow}, origin: document, kind: algorithmic";
     EXPECT_EQ(provenanceError("bound: a, at_most: 100, bound_from: text" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6" + ofTime), isAbsolute);
-    EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, "
-                              "kind: architectural"),
-              isAbsolute);
+    EXPECT_EQ(
+        provenanceError("order: a < 16.6, at: {e: slow}, origin: document, kind: architectural"),
+        isAbsolute);
     EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}, origin: document, kind: absolute"),
               "no error");
     EXPECT_EQ(provenanceError("order: a < 16.6, at: {e: slow}"), "no error") << "absolute, too";
@@ -317,16 +316,15 @@ TEST(Claims, WhatReadsATimeHasAKind) {
     EXPECT_EQ(provenanceError("order: 0 < a - a / 2" + ofTime), "no error");
     EXPECT_EQ(provenanceError("trend: a - 5, over: n, direction: increasing" + ofTime), isAbsolute);
     EXPECT_EQ(provenanceError("bound: a > 20, at_most: 1, bound_from: text" + ofTime), isAbsolute);
-    EXPECT_EQ(provenanceError("trend: n, over: a, direction: increasing, at: {e: slow}, origin: "
-                              "document"),
+    EXPECT_EQ(provenanceError(
+                  "trend: n, over: a, direction: increasing, at: {e: slow}, origin: document"),
               "claim 'C' reads a time and needs 'kind': algorithmic | architectural");
     EXPECT_EQ(provenanceError("order: [e=slow, e=often], origin: document, kind: algorithmic"),
               isAbsolute);
     // A reason for where it is not judged is of an earlier claim.
     const std::string ofGpu =
         "order: a < 2 * a, at: {e: slow}, origin: document, kind: architectural, because: "
-        "{verdict: "
-        "fails, reason: r";
+        "{verdict: fails, reason: r";
     EXPECT_EQ(provenanceError(ofGpu + ", device: software}"),
               "claim 'C' has a reason for software ('because'), and a GPU alone judges it");
     EXPECT_EQ(provenanceError(ofGpu + ", device: gpu}"), "no error");
@@ -351,14 +349,13 @@ TEST(Claims, ABoundFromPrintReadsWhatIsPrinted) {
     const auto errorOf = [](const std::string& claim) {
         const config::Experiment experiment = tables::experimentFrom(
             "sweep: {scene: [s, t]}\nlayout: {rows: scene, columns: {a: {metric: bytes}, b: "
-            "{metric: count}}}\nprinted: {values: \"scene,a\\ns,4\\nt,\"}\nclaims:\n  C: {says: "
-            "s, origin: document, bound_from: print, " +
+            "{metric: count}}}\nprinted: {values: \"scene,a\\ns,4\\nt,\"}\nclaims:\n  C: {says: s, "
+            "origin: document, bound_from: print, " +
             claim + "}\n");
         return refusalOf(experiment);
     };
     const std::string readsNone =
-        "claim 'C' has its bound from print, and reads no cell with a printed value: "
-        "text | ours";
+        "claim 'C' has its bound from print, and reads no cell with a printed value: text | ours";
     EXPECT_EQ(errorOf("bound: a, at_most: 4"), "no error");
     EXPECT_EQ(errorOf("ratio: b / a, at_most: 4"), "no error") << "one that is printed will do";
     EXPECT_EQ(errorOf("bound: b, at_most: 4"), readsNone);
@@ -398,10 +395,9 @@ TEST(Claims, WhatIsPrintedMeetsABoundFromPrint) {
     EXPECT_EQ(errorOf("trend: t, over: number, at_least: 0.01, at_most: 225, kind: algorithmic"),
               isAnother + "exponent 1.5")
         << "evenly, but by any factor";
-    EXPECT_EQ(
-        errorOf("tolerance: a, at_most: 50%"),
-        "claim 'C' is 'tolerance', whose width is never printed; write 'bound_from: ours', or "
-        "'text'");
+    EXPECT_EQ(errorOf("tolerance: a, at_most: 50%"),
+              "claim 'C' is 'tolerance', whose width is never printed; write 'bound_from: ours', "
+              "or 'text'");
 }
 
 TEST(Claims, WhatCannotBeJudgedIsRefused) {
@@ -436,8 +432,7 @@ TEST(Claims, WhatReadsCalibratedCellsSaysSo) {
         const config::Experiment experiment = tables::experimentFrom(
             "sweep: {number: [1]}\nlayout: {rows: number, columns: {a: {metric: bytes}, b: "
             "{metric: count}}}\nprinted: {calibrated: [{column: a}], values: "
-            "\"number,a,b\\n1,4,5\"}"
-            "\nclaims:\n  C: {says: s, origin: " +
+            "\"number,a,b\\n1,4,5\"}\nclaims:\n  C: {says: s, origin: " +
             origin + ", order: " + order + "}\n");
         const tables::Table table = tables::buildTable(experiment, maker.records());
         return evaluateClaims(experiment, table, kSoftware)[0].reason;
@@ -773,8 +768,8 @@ TEST(Claims, JudgeTheMedianThatTheirColumnShows) {
     const config::Experiment experiment = tables::experimentFrom(
         "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, b: {metric: b}, c: {metric: "
         "c}, q: {of: a / c}}, cell: \"{median:.4g}\"}\n"
-        "claims: {A: {says: so, bound: a, at_most: 2}, Q: {says: so, bound: q, at_most: 2}, "
-        "R: {says: so, ratio: a / c, at_most: 2}, E: {says: so, bound: a / c, at_most: 2}}\n");
+        "claims: {A: {says: so, bound: a, at_most: 2}, Q: {says: so, bound: q, at_most: 2}, R: "
+        "{says: so, ratio: a / c, at_most: 2}, E: {says: so, bound: a / c, at_most: 2}}\n");
     const tables::Table table = tables::buildTable(experiment, records);
     const auto results = evaluateClaims(experiment, table, kSoftware);
     const auto shown = [&](std::size_t column) {
@@ -857,9 +852,10 @@ TEST(Claims, StrictlyIsSoOfWhatVaries) {
         return n < 4.0 ? n * drift(round) : round % 3 == 1 ? 5.0 : 4.0;
     };
     EXPECT_EQ(judge(rounded).verdict, Verdict::Ambiguous);
-    EXPECT_THAT(judge(rounded).reason,
-                StartsWith("rounded values: with half a step on either side the interval "
-                           "reaches over the bound"));
+    EXPECT_THAT(
+        judge(rounded).reason,
+        StartsWith(
+            "rounded values: with half a step on either side the interval reaches over the bound"));
     const Timed known = [](double n, int round) { return n < 4.0 ? n * drift(round) : 4.0; };
     EXPECT_EQ(judge(known).verdict, Verdict::Fails) << "the same in all processes";
     const Timed beside = [](double n, int round) {
@@ -1074,8 +1070,8 @@ TEST(Claims, StatisticsOverProcessesDecideNothing) {
             maker.process(process).add("a", {a}, "", "byte").add("b", {1.0}, "", "byte");
         }
         return judgeOne(
-            "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, "
-            "b: {metric: b}, c: {of: a + b}}, cell: \"{" +
+            "sweep: {n: [1]}\nlayout: {rows: n, columns: {a: {metric: a}, b: {metric: b}, c: {of: "
+            "a + b}}, cell: \"{" +
                 format + ":.3f}\"}\nclaims: {C: {says: so, " + claim + "}}\n",
             maker.records());
     };
@@ -1085,10 +1081,9 @@ TEST(Claims, StatisticsOverProcessesDecideNothing) {
               "exact: a, equals: 1", "bound: c, at_most: 100"}) {
             const ClaimResult result = judge(format, claim, 2.0);
             EXPECT_EQ(result.verdict, Verdict::Ambiguous) << format << ": " << claim;
-            EXPECT_EQ(result.reason,
-                      "a " + format +
-                          " over processes has no interval, as what is rare moves it "
-                          "by any amount; '{median}' has one")
+            EXPECT_EQ(result.reason, "a " + format +
+                                         " over processes has no interval, as what is rare moves "
+                                         "it by any amount; '{median}' has one")
                 << claim;
         }
         EXPECT_EQ(judge(format, "bound: a, at_most: 100", 1.0).verdict, Verdict::Holds) << format;
@@ -1315,21 +1310,18 @@ TEST(Claims, BadOperandsAreErrors) {
     EXPECT_EQ(error("max(a, c-c) * 2"), "no error");
     experiment.claims[0].at = {{"m", {Node::number(1.0)}}};
     EXPECT_EQ(error("a"),
-              "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row "
-              "axes: n)");
+              "t.yaml:4:2: claim 'X': at: 'm' is no row axis; did you mean 'n'? (row axes: n)");
 }
 
 TEST(Claims, WhatWhenLeavesOutStandsBesideNothing) {
     config::Experiment experiment = tables::experimentFrom(
         "sweep: {m: [a, b], seed: [1, 2], when: {seed: {m: b}}}\nlayout: {rows: [m, seed], "
-        "columns: "
-        "{e: {metric: e}}}\nclaims: {C: {says: so, order: [a, b], of: e}}\n");
+        "columns: {e: {metric: e}}}\nclaims: {C: {says: so, order: [a, b], of: e}}\n");
     experiment.claims[0].location = {"t.yaml", 4, 2};
-    EXPECT_EQ(
-        errorText([&] { requireJudgeable(experiment, tables::buildTable(experiment, {})); }),
-        "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves "
-        "some of it without 'seed'; allowed: a layout whose rows do not name it, with its "
-        "values in the column: 'where: {seed: […]}'");
+    EXPECT_EQ(errorText([&] { requireJudgeable(experiment, tables::buildTable(experiment, {})); }),
+              "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep "
+              "leaves some of it without 'seed'; allowed: a layout whose rows do not name it, with "
+              "its values in the column: 'where: {seed: […]}'");
 }
 
 TEST(Claims, WhatWhenLeavesOutIsNoRow) {
@@ -1354,8 +1346,8 @@ TEST(Claims, WhatWhenLeavesOutIsNoRow) {
     const std::string columns = "rows: n, columns: m, cell: {metric: e}";
     EXPECT_EQ(refused(columns, "order: a < b"),
               beside +
-                  "rows of both, with a column 'of: \"x / x[AXIS=VALUE]\"' in the layout, and "
-                  "a bound of it");
+                  "rows of both, with a column 'of: \"x / x[AXIS=VALUE]\"' in the layout, and a "
+                  "bound of it");
     EXPECT_EQ(refused(columns, "bound: a, at_most: 1, at: {n: 2}"), beside + "'at' without 'n'");
     EXPECT_EQ(refused(columns, "bound: a, at_most: 1"), "no error");
     for (const char* claim :
@@ -1409,10 +1401,9 @@ TEST(Claims, WhatHasNoValueSomewhereIsRefused) {
                   why + "'" + column + "' has no value at m=a, n=–; allowed: at: {m: [b, c]}");
         EXPECT_EQ(refused(std::string(claim) + ", at: {m: [b, c]}"), "no error");
     }
-    EXPECT_EQ(
-        refused("order: [n=2, n=1], of: e, at: {m: a}"),
-        "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep leaves "
-        "some of it without 'n'; allowed: at: {m: [b, c]}");
+    EXPECT_EQ(refused("order: [n=2, n=1], of: e, at: {m: a}"),
+              "t.yaml:4:2: claim 'C' has no row of all that it compares: 'when' of the sweep "
+              "leaves some of it without 'n'; allowed: at: {m: [b, c]}");
 }
 
 /// By whatever the sweep leaves out.
@@ -1432,10 +1423,9 @@ TEST(Claims, OfWhichNoProfileHasARowIsRefused) {
         return errorText([&] { requireRows(profiles, tables); });
     };
     const std::string why = "t.yaml:4:2: claim 'C' is judged in no profile: ";
-    EXPECT_EQ(refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: a, n: 2}"),
-              why +
-                  "no row is of {m: a, n: 2}; there are: {m: a, n: 1}, {m: b, n: 1}, {m: b, n: "
-                  "2}");
+    EXPECT_EQ(
+        refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: a, n: 2}"),
+        why + "no row is of {m: a, n: 2}; there are: {m: a, n: 1}, {m: b, n: 1}, {m: b, n: 2}");
     EXPECT_EQ(refused("bound: e, at_most: 1, at: {m: a, n: 2}", "{m: b, n: 1}"), "no error");
     EXPECT_EQ(refused("order: [a, b], of: e, at: {n: 2}", "{m: a, n: 2}"),
               why + "no row has all that it compares");
@@ -1475,10 +1465,8 @@ TEST(Claims, WhatNoRowHasByAColumnOfTheFileIsRefused) {
     };
     const std::string why =
         "t.yaml:4:2: claim 'C': what it compares stands in rows that differ by 'run' (0, 1, 2, 3), "
-        "a "
-        "column of the file; allowed: in 'sweep', as a parameter; what repeats a case has its "
-        "number "
-        "in the column 'process', or in 'seed' where each has random numbers of its own";
+        "a column of the file; allowed: in 'sweep', as a parameter; what repeats a case has its "
+        "number in the column 'process', or in 'seed' where each has random numbers of its own";
     EXPECT_EQ(refused("order: [b, c], of: e"), why);
     EXPECT_EQ(refused("trend: e, over: n, direction: increasing"), why);
     EXPECT_EQ(refused("bound: e, at_most: 1"), "no error");
@@ -1661,8 +1649,8 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
             }
         }
         return judgeOne(
-            "sweep: {scene: [outdoor/nest, city, tree], n: [1, 2]}\nlayout: {rows: [scene, "
-            "n], columns: {a: {metric: a}}}\nclaims:\n  X: {says: s, " +
+            "sweep: {scene: [outdoor/nest, city, tree], n: [1, 2]}\nlayout: {rows: [scene, n], "
+            "columns: {a: {metric: a}}}\nclaims:\n  X: {says: s, " +
                 claim + "}\nprinted: {unfit: " + unfit + "}\n",
             maker.records());
     };
@@ -1684,10 +1672,9 @@ TEST(Claims, OfSeveralScenesAVerdictNamesThoseOnWhichItDoesNotHold) {
     const ClaimResult others = judged(ofText, 1, 1, 3, "[tree]");
     EXPECT_EQ(others.verdict, Verdict::Holds);
     EXPECT_EQ(others.holdsOn, "");
-    EXPECT_EQ(
-        others.reason,
-        "worst at nest, n 2; one sample; not judged on tree (fails there), which could not be "
-        "fitted to what is printed");
+    EXPECT_EQ(others.reason,
+              "worst at nest, n 2; one sample; not judged on tree (fails there), which could not "
+              "be fitted to what is printed");
     EXPECT_EQ(judged(ofText, 3, 1, 1, "[tree]").holdsOn, "1 of 2 scenes, not on nest");
     const ClaimResult none = judged(ofText + ", at: {scene: tree}", 1, 1, 3, "[tree]");
     EXPECT_EQ(none.verdict, Verdict::NotApplicable);

@@ -658,8 +658,7 @@ TEST(RoundsCoverage, OfIntervalsThatRoundsWentOnFor) {
         const double share = static_cast<double>(held) / all;
         const double shareByError = static_cast<double>(heldByError) / byError;
         std::printf(
-            "  %d cases, %.1f %%: %.1f %%; ended by error %.0f %%, of these %.1f %%; %.1f "
-            "rounds\n",
+            "  %d cases, %.1f %%: %.1f %%; ended by error %.0f %%, of these %.1f %%; %.1f rounds\n",
             cases, 100.0 * scatter, 100.0 * share, 100.0 * byError / all, 100.0 * shareByError,
             1.0 * rounds / trials);
         EXPECT_GE(share, atLeast(0.95)) << cases << " cases, " << scatter;

@@ -93,10 +93,10 @@ TEST(SameMean, IsRefusedWhereItCouldNotFail) {
     EXPECT_EQ(errorWith("{frame: 99, frames: 6}", "{frames: 1}", "1%"),
               "claim 'X' is 'same_mean' and needs 'output.frames', a seed each: 2 or more");
     // 2 of 924 deals a row.
-    EXPECT_EQ(errorWith("{frame: 99, frames: 6}", "{frames: 6}", "0.6%"),
-              "claim 'X' asks for 0.6 % of false alarms over 3 rows, and could not fail: 6 frames "
-              "and 6 of the truth come to no p below 0.65 %; take more ('output.frames', 'truth: "
-              "{frames}')");
+    EXPECT_EQ(
+        errorWith("{frame: 99, frames: 6}", "{frames: 6}", "0.6%"),
+        "claim 'X' asks for 0.6 % of false alarms over 3 rows, and could not fail: 6 frames and 6 "
+        "of the truth come to no p below 0.65 %; take more ('output.frames', 'truth: {frames}')");
 }
 
 }  // namespace

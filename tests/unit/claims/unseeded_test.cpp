@@ -94,10 +94,10 @@ TEST(Unseeded, WhatDiffersIsOfWhatWasMeasuredWhateverIsShown) {
                  {"bound: one, at_most: 1, at: {n: [2, 3]}", "exact: one, equals: 0.5, at: {n: 3}",
                   "order: [n=2, n=3], of: one"}) {
                 const ClaimResult result = resultOf(
-                    experimentOf(of, fmt::format("sweep: {{n: [1, 2, 3]}}\nlayout: {{rows: n, "
-                                                 "columns: {{{}}}}}\nclaims: {{C: {{says: so, "
-                                                 "{}}}}}\n",
-                                                 columns, claim)),
+                    experimentOf(of,
+                                 fmt::format("sweep: {{n: [1, 2, 3]}}\nlayout: {{rows: n, columns: "
+                                             "{{{}}}}}\nclaims: {{C: {{says: so, {}}}}}\n",
+                                             columns, claim)),
                     maker.records());
                 EXPECT_EQ(result.verdict, Verdict::Ambiguous) << columns << claim;
                 EXPECT_THAT(result.reason, HasSubstr(kOneBesideMany)) << columns << claim;
@@ -152,8 +152,8 @@ TEST(Unseeded, WhatHasNoSeedBesideWhatHasOneDrawsNone) {
         if (process == 0) maker.frame(records::kSetup).add("rays", {4.0}, "", "ray");
     }
     const std::string body =
-        "sweep: {n: [1]}\nlayout: {rows: n, columns: {rays: {metric: rays}, many: {metric: many}}}"
-        "\nclaims: {C: {says: so, exact: rays, equals: 4}}\n";
+        "sweep: {n: [1]}\nlayout: {rows: n, columns: {rays: {metric: rays}, many: {metric: "
+        "many}}}\nclaims: {C: {says: so, exact: rays, equals: 4}}\n";
     EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, Verdict::Holds);
 }
 
@@ -171,8 +171,8 @@ TEST(Unseeded, EqualNumbersAreAtTheirBound) {
                                              {"more_than", Verdict::Fails},
                                              {"less_than", Verdict::Fails}}) {
             const std::string body = fmt::format(
-                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, "
-                "many: {{metric: many}}}}}}\nclaims: {{C: {{says: so, bound: rays, {}: {}}}}}\n",
+                "sweep: {{n: [1]}}\nlayout: {{rows: n, columns: {{rays: {{metric: rays}}, many: "
+                "{{metric: many}}}}}}\nclaims: {{C: {{says: so, bound: rays, {}: {}}}}}\n",
                 limit, count);
             EXPECT_EQ(resultOf(experimentOf(Of::Import, body), maker.records()).verdict, verdict)
                 << limit << ' ' << count;
@@ -229,11 +229,10 @@ TEST(Unseeded, NumbersThatDifferByTheirRoundingAreEqual) {
             for (const char* claim : {"order: [n=1, n=2], of: e", "bound: e, at_least: 0.3",
                                       "ratio: n=1 / n=2, of: e, at_most: 0.81"}) {
                 const ClaimResult result = resultOf(
-                    experimentOf(Of::Import,
-                                 fmt::format("sweep: {{n: [1, 2]}}\nlayout: {{rows: n, columns: "
-                                             "{{e: {{metric: e}}}}}}\n"
-                                             "claims: {{C: {{says: so, {}}}}}\n",
-                                             claim)),
+                    experimentOf(Of::Import, fmt::format("sweep: {{n: [1, 2]}}\nlayout: {{rows: n, "
+                                                         "columns: {{e: {{metric: e}}}}}}\n"
+                                                         "claims: {{C: {{says: so, {}}}}}\n",
+                                                         claim)),
                     maker.records());
                 const bool isOpen = isBesideNoise && processes < 6;
                 EXPECT_EQ(result.verdict, isOpen ? Verdict::Ambiguous : Verdict::Holds) << claim;
@@ -329,8 +328,8 @@ Verdict exactOfSeeds(const std::string& layout, const std::string& at, int seeds
         maker.add("e", {double{random.uniform()} < 0.5 ? 4.0 : 5.0}, "", "1");
     }
     const std::string body = fmt::format(
-        "sweep: {{seed: [{}]}}\nlayout: {{{}}}\nclaims: {{C: {{says: so, exact: e, "
-        "equals: 4{}}}}}\n",
+        "sweep: {{seed: [{}]}}\nlayout: {{{}}}\nclaims: {{C: {{says: so, exact: e, equals: "
+        "4{}}}}}\n",
         values, fmt::format(fmt::runtime(layout), values), at);
     return resultOf(experimentOf(Of::Import, body), maker.records()).verdict;
 }
@@ -425,8 +424,8 @@ TEST(Unseeded, WhatIsTakenTogetherOfCasesMeasuredOnceDecidesNothing) {
             EXPECT_THAT(
                 once.reason,
                 HasSubstr("takes values of 'run' together that were measured once each, and may "
-                          "repeat one case: an axis of rows tells them apart; what repeats a "
-                          "case is its processes (of an import the column 'process', or 'seed')"))
+                          "repeat one case: an axis of rows tells them apart; what repeats a case "
+                          "is its processes (of an import the column 'process', or 'seed')"))
                 << claim;
         }
         EXPECT_EQ(judgeTogether(of, "run", 2, order).verdict, Verdict::Holds) << "known by now";
@@ -451,12 +450,12 @@ TEST(Unseeded, AMetricWithoutSeedsBesideOneWithSomeIsTakenTogetherLikewise) {
             }
         }
     }
-    const ClaimResult result = resultOf(
-        experimentOf(Of::Import,
-                     "sweep: {m: [b, c], trial: [0, 1, 2, 3, 4]}\nlayout: {rows: m, columns: "
-                     "{once: {metric: once, where: {trial: [0, 1, 2, 3, 4]}}}}\n"
-                     "claims: {C: {says: so, order: [b, c], of: once}}\n"),
-        maker.records());
+    const ClaimResult result =
+        resultOf(experimentOf(Of::Import,
+                              "sweep: {m: [b, c], trial: [0, 1, 2, 3, 4]}\nlayout: {rows: m, "
+                              "columns: {once: {metric: once, where: {trial: [0, 1, 2, 3, 4]}}}}\n"
+                              "claims: {C: {says: so, order: [b, c], of: once}}\n"),
+                 maker.records());
     EXPECT_EQ(result.verdict, Verdict::Ambiguous);
     EXPECT_THAT(result.reason, HasSubstr("takes values of 'trial' together"));
 }
@@ -487,10 +486,10 @@ TEST(Unseeded, ARowForEachFrameOfAnImport) {
             maker.frame(frame).add("e", {isSmall ? 1.0 : 2.0}, "", "1");
         }
     }
-    const config::Experiment experiment = experimentOf(
-        Of::Import,
-        "sweep: {m: [b, c]}\nlayout: {rows: [m, frame], columns: {e: {metric: e}}}\nclaims: {C: "
-        "{says: so, order: [m=b, m=c], of: e}}\n");
+    const config::Experiment experiment =
+        experimentOf(Of::Import,
+                     "sweep: {m: [b, c]}\nlayout: {rows: [m, frame], columns: {e: {metric: "
+                     "e}}}\nclaims: {C: {says: so, order: [m=b, m=c], of: e}}\n");
     const tables::Table table = tables::buildTable(experiment, maker.records());
     ASSERT_EQ(table.rows.size(), 4U);
     EXPECT_EQ(table.rowName(1), "m=b, frame=7");
@@ -524,10 +523,10 @@ TEST(Unseeded, DoubtIsOfAllTablesOfAProgram) {
                                                {Of::Program, "b", Verdict::Holds}}) {
         config::Experiment first =
             experimentOf(of, "sweep: {n: [1]}\nlayout: {rows: n, columns: {e: {metric: e}}}\n");
-        config::Experiment second = experimentOf(
-            of,
-            "sweep: {n: [2]}\nlayout: {rows: n, columns: {f: {metric: f}}}\nclaims: {C: {says: so, "
-            "bound: f, at_most: 1}}\n");
+        config::Experiment second =
+            experimentOf(of,
+                         "sweep: {n: [2]}\nlayout: {rows: n, columns: {f: {metric: f}}}\nclaims: "
+                         "{C: {says: so, bound: f, at_most: 1}}\n");
         second.id = "zju2005/9.8";
         if (of == Of::Program) {
             first.document.set("program", programOf("a"));
@@ -557,8 +556,7 @@ TEST(Unseeded, WhatDiffersByRoundingIsOneNumber) {
         }
     }
     for (const char* claim : {"order: [b, c], of: e", "bound: e, at_most: 0.41, at: {m: b}",
-                              "exact: e, equals: 0.4, "
-                              "at: {m: b}"}) {
+                              "exact: e, equals: 0.4, at: {m: b}"}) {
         const ClaimResult result = resultOf(
             experimentOf(Of::Import,
                          fmt::format("sweep: {{m: [b, c]}}\nlayout: {{rows: m, columns: {{e: "
@@ -668,18 +666,19 @@ TEST(Unseeded, AnErrorAgainstItselfIsSaidOfAClaim) {
     }
     for (const auto& [at, isSaid] : {std::pair("", true), {", at: {n: 1}", false}}) {
         config::Experiment experiment = experimentOf(
-            Of::Program, fmt::format("sweep: {{n: [1, 4]}}\nlayout: {{rows: n, columns: {{e: "
-                                     "{{metric: rmse, pass: r}}, d: {{of: 2 * e}}}}}}\nclaims: "
-                                     "{{C: {{says: so, bound: d, at_most: 1{}}}}}\n",
-                                     at));
-        experiment.document.set(
-            "program", parseYaml("{command: \"x {n} {out}\", params: {n: 1}, images: {r: {file: "
-                                 "r.pfm, truth: {n: 4}}}}",
-                                 "t.yaml"));
+            Of::Program,
+            fmt::format(
+                "sweep: {{n: [1, 4]}}\nlayout: {{rows: n, columns: {{e: {{metric: rmse, pass: r}}, "
+                "d: {{of: 2 * e}}}}}}\nclaims: {{C: {{says: so, bound: d, at_most: 1{}}}}}\n",
+                at));
+        experiment.document.set("program", parseYaml("{command: \"x {n} {out}\", params: {n: 1}, "
+                                                     "images: {r: {file: r.pfm, truth: {n: 4}}}}",
+                                                     "t.yaml"));
         const ClaimResult result = resultOf(experiment, maker.records());
         EXPECT_EQ(result.verdict, Verdict::Holds);
-        EXPECT_EQ(result.reason.find("reads an error of a case against itself, 0 whatever the "
-                                     "program does") != std::string::npos,
+        EXPECT_EQ(result.reason.find(
+                      "reads an error of a case against itself, 0 whatever the program does") !=
+                      std::string::npos,
                   isSaid)
             << result.reason;
     }
@@ -705,11 +704,10 @@ ClaimResult judgeSeedsOf(const std::string& metric, int seeds, int first, int pr
         }
     }
     const config::Experiment experiment = experimentOf(
-        Of::Import,
-        fmt::format("sweep: {{m: [a, b], seed: [{0}]}}\nlayout: {{rows: m, columns: {{x: "
-                    "{{metric: {1}, where: {{seed: [{0}]}}}}}}}}\n"
-                    "claims: {{C: {{says: so, order: [a, b], of: x}}}}\n",
-                    values, metric));
+        Of::Import, fmt::format("sweep: {{m: [a, b], seed: [{0}]}}\nlayout: {{rows: m, columns: "
+                                "{{x: {{metric: {1}, where: {{seed: [{0}]}}}}}}}}\n"
+                                "claims: {{C: {{says: so, order: [a, b], of: x}}}}\n",
+                                values, metric));
     // Of an import there are the cases of the file alone.
     std::vector<config::Case> planned = tables::planOf(experiment, maker.records());
     std::erase_if(planned, [&](const config::Case& item) {
@@ -755,8 +753,8 @@ TEST(Unseeded, ValuesOfASweptSeedAreRounds) {
     const ClaimResult few = judgeSwept(pooled, 4, 1.1, random);
     EXPECT_EQ(few.verdict, Verdict::Ambiguous);
     EXPECT_EQ(few.reason,
-              "4 seeds of random numbers; an interval needs 6: `measure: {processes: 6}` "
-              "where the seed is not swept, or as many values of 'seed' in a sweep or an import");
+              "4 seeds of random numbers; an interval needs 6: `measure: {processes: 6}` where the "
+              "seed is not swept, or as many values of 'seed' in a sweep or an import");
     EXPECT_EQ(judgeSwept("rows: [m, seed], columns: {{e: {{metric: e}}}}", 8, 1.1, random).verdict,
               Verdict::Ambiguous)
         << "one seed a row";

@@ -301,8 +301,8 @@ TEST(Merge, RefusesDifferentPlans) {
         errorText([&] {
             mergeRuns(plan, {makeShard(plan, 1, 2, {0}), makeShard(other, 2, 2, {1})}, "merge");
         }),
-        "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program "
-        "or a shader changed (build  then, another buil now)");
+        "s1 and s2 are shards of different plans (0123456789ab, fedcba987654): the program or a "
+        "shader changed (build  then, another buil now)");
 }
 
 TEST(Merge, RefusesACaseThatTwoHave) {

@@ -31,8 +31,8 @@ TEST(Submission, QuotesForTheShell) {
 
 TEST(Submission, Commands) {
     EXPECT_EQ(cluster::shardCommand(makeSubmission(), 2),
-              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet --assets "
-              "'/a b' --jobs 2 --resume '/out put/shards/2'");
+              "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' run --quiet --assets '/a "
+              "b' --jobs 2 --resume '/out put/shards/2'");
     // As short for a thousand shards.
     EXPECT_EQ(cluster::mergeCommand(makeSubmission()),
               "env GFXREPRO_DATA='/opt/kept it' '/opt/kept it/gfxrepro' merge '/out put'");

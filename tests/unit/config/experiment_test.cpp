@@ -412,9 +412,9 @@ TEST_F(ExperimentTest, Overrides) {
     EXPECT_EQ(loadError(kTerrain, options),
               "command line, measure.repeats=0: measure: repeats is 0; allowed: 1 … 1000000");
     options.sets = {parseOverride("technique.x=0")};
-    EXPECT_EQ(loadError(kTerrain, options),
-              "command line, technique.x=0: cannot set 'technique.x': 'technique' is text, not a "
-              "map");
+    EXPECT_EQ(
+        loadError(kTerrain, options),
+        "command line, technique.x=0: cannot set 'technique.x': 'technique' is text, not a map");
 }
 
 TEST_F(ExperimentTest, SceneFilesStandBesideTheirConfig) {
@@ -470,9 +470,9 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
     folder.write("zju/old 1/d.ply", "");
     EXPECT_EQ(scenes("scene: 'old [1]*/*.ply'"), "/zju/old [1]*/d.ply ");
     folder.write("n [x]*/scans/e.ply", "");
-    const auto path = folder.write("n [x]*/a.yaml",
-                                   "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: "
-                                   "'scans/../scans/*.ply'}\n");
+    const auto path = folder.write(
+        "n [x]*/a.yaml",
+        "table: p/1\ntitle: t\ntechnique: x\nsweep: {scene: 'scans/../scans/*.ply'}\n");
     for (const auto& sets :
          {std::vector<Override>(), std::vector<Override>{parseOverride("output.width=64")}}) {
         EXPECT_EQ(
@@ -517,9 +517,9 @@ TEST_F(ExperimentTest, SweptOutputSizes) {
 }
 
 TEST_F(ExperimentTest, SeveralScenesAreSwept) {
-    EXPECT_EQ(errorWith("scene: [a.ply, b.ply]\n"),
-              "DIR/zju/a.yaml:4:8: scene is [a.ply, b.ply]; allowed: one; several stand below "
-              "'sweep'");
+    EXPECT_EQ(
+        errorWith("scene: [a.ply, b.ply]\n"),
+        "DIR/zju/a.yaml:4:8: scene is [a.ply, b.ply]; allowed: one; several stand below 'sweep'");
     EXPECT_EQ(errorWith("scene: \"*.ply\"\n"),
               "DIR/zju/a.yaml:4:8: scene is \"*.ply\"; allowed: one; several stand below 'sweep'");
 }
@@ -555,10 +555,9 @@ TEST_F(ExperimentTest, KeysOfWhichNothingFollowsAreRefused) {
                               std::string(few).size() + 2));
     }
     EXPECT_EQ(errorOf("measure: {processes: 6, time_budget_s: 9}\n"), "no error");
-    EXPECT_EQ(
-        errorOf("measure: {warmup: 2}\n"),
-        "DIR/zju/a.yaml:4:11: measure: unknown key 'warmup'; allowed: lane, repeats, processes, "
-        "time_budget_s, time_limit_s");
+    EXPECT_EQ(errorOf("measure: {warmup: 2}\n"),
+              "DIR/zju/a.yaml:4:11: measure: unknown key 'warmup'; allowed: lane, repeats, "
+              "processes, time_budget_s, time_limit_s");
     EXPECT_EQ(errorOf("printed: {at: {n: 3}}\n"),
               "DIR/zju/a.yaml:4:11: 'at': nothing is printed that could have been measured there; "
               "allowed: with 'values'");

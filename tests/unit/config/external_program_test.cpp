@@ -93,13 +93,14 @@ TEST(ExternalProgram, ThatTakesASeedHasItAsAParameter) {
     EXPECT_FALSE(programOf(image + ", truth: {n: 2, seed: 9}}}").sharesSeeds);
     EXPECT_FALSE(programOf(image + ", truth: \"{here}/t.png\"}}").sharesSeeds);
     EXPECT_FALSE(programOf(image + ", truth: {n: 2}}}").sharesSeeds);
-    EXPECT_TRUE(programOf("command: t {seed} {m}\nparams: {m: [a, b]}\nimages: {r: {file: r.png, "
-                          "truth: {m: b}}}")
-                    .sharesSeeds);
-    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, "
-                      "seed: 3}}}"),
-              "c.yaml:3:41: program: image 'r': truth: unknown key 'seed'; allowed: frames, frame, "
-              "n");
+    EXPECT_TRUE(
+        programOf(
+            "command: t {seed} {m}\nparams: {m: [a, b]}\nimages: {r: {file: r.png, truth: {m: b}}}")
+            .sharesSeeds);
+    EXPECT_EQ(
+        errorOf(
+            "command: t {n}\nparams: {n: 1}\nimages: {r: {file: r.png, truth: {n: 2, seed: 3}}}"),
+        "c.yaml:3:41: program: image 'r': truth: unknown key 'seed'; allowed: frames, frame, n");
 }
 
 TEST(ExternalProgram, TypesAreThoseOfTheDefaults) {
@@ -138,14 +139,12 @@ TEST(ExternalProgram, RefusesValuesThatAParameterDoesNotTake) {
     Params params(parseYaml("{n: 128}", "p"), "technique 't'");
     EXPECT_EQ(errorText([&] { program.declare(params); }),
               "p:1:5: technique 't': n is 128; allowed: 1 … 64 sample");
-    EXPECT_EQ(
-        errorOf("command: t {n}\nparams: {n: {default: 4, min: 8}}"),
-        "c.yaml:2:23: program: parameter 'n': default is 4; allowed: one of the values it may "
-        "have");
-    EXPECT_EQ(
-        errorOf("command: t {n}\nparams: {n: {default: z, choices: [x, y]}}"),
-        "c.yaml:2:23: program: parameter 'n': default is z; allowed: one of the values it may "
-        "have");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: 4, min: 8}}"),
+              "c.yaml:2:23: program: parameter 'n': default is 4; allowed: one of the values it "
+              "may have");
+    EXPECT_EQ(errorOf("command: t {n}\nparams: {n: {default: z, choices: [x, y]}}"),
+              "c.yaml:2:23: program: parameter 'n': default is z; allowed: one of the values it "
+              "may have");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: 3000000000}"),
               "c.yaml:2:13: program: parameter 'n': default is 3000000000; allowed: a whole number "
               "of 32 bits, or one with a point, as 5000000000.0");
@@ -184,19 +183,16 @@ TEST(ExternalProgram, DeclaresWhatItSays) {
     EXPECT_EQ(program.pictures.at(1).truthFile, "{here}/truth.exr");
     // A claim would judge a time of another name from one sample, as what never varies.
     EXPECT_EQ(errorOf("command: t\nmetrics: {render_ms: ms, rays_per_second: ray/s}"), "no error");
-    EXPECT_EQ(
-        errorOf("command: t\nmetrics: {render: ms}"),
-        "c.yaml:2:19: program: metric 'render' has the unit 'ms'; a time has a name that ends "
-        "in _ms and the unit ms, by which claims know it, and nothing else has");
-    EXPECT_EQ(
-        errorOf("command: t\nmetrics: {render_ms: {unit: s, pattern: '(.+) s'}}"),
-        "c.yaml:2:29: program: metric 'render_ms' has the unit 's'; a time has a name that ends in "
-        "_ms and the unit ms, by which claims know it, and nothing else has; 'scale' multiplies "
-        "the pattern's number");
-    EXPECT_EQ(
-        errorOf("command: t\nmetrics: {fps: {unit: 1/s}}"),
-        "c.yaml:2:23: program: metric 'fps' has the unit '1/s'; what is per second has a name "
-        "that ends in _per_second, by which claims know that it varies");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {render: ms}"),
+              "c.yaml:2:19: program: metric 'render' has the unit 'ms'; a time has a name that "
+              "ends in _ms and the unit ms, by which claims know it, and nothing else has");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {render_ms: {unit: s, pattern: '(.+) s'}}"),
+              "c.yaml:2:29: program: metric 'render_ms' has the unit 's'; a time has a name that "
+              "ends in _ms and the unit ms, by which claims know it, and nothing else has; 'scale' "
+              "multiplies the pattern's number");
+    EXPECT_EQ(errorOf("command: t\nmetrics: {fps: {unit: 1/s}}"),
+              "c.yaml:2:23: program: metric 'fps' has the unit '1/s'; what is per second has a "
+              "name that ends in _per_second, by which claims know that it varies");
     for (const char* unit : {"fps", "Hz", "1/ms", "ray/second", "seconds", "milliseconds"}) {
         EXPECT_THAT(errorOf(std::string("command: t\nmetrics: {speed: ") + unit + "}"),
                     HasSubstr(std::string("'speed' has the unit '") + unit + "'; "));
@@ -344,10 +340,9 @@ TEST(ExternalProgram, RefusesWhatItCouldNotTake) {
               "c.yaml:2:13: program: image 'r': file is r.gif; allowed: a name that ends in one of "
               ".exr, .png, .pfm, .hdr, .pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
     EXPECT_EQ(errorOf("command: t {n}\nparams: {n: a.png}\nimages: {r: \"{n}\"}"), "no error");
-    EXPECT_EQ(
-        errorOf("command: t\nimages: {r: {file: r.png, truth: t.gif}}"),
-        "c.yaml:2:34: program: image 'r': truth is t.gif; allowed: a name that ends in one of "
-        ".exr, .png, .pfm, .hdr, .pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
+    EXPECT_EQ(errorOf("command: t\nimages: {r: {file: r.png, truth: t.gif}}"),
+              "c.yaml:2:34: program: image 'r': truth is t.gif; allowed: a name that ends in one "
+              "of .exr, .png, .pfm, .hdr, .pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
     EXPECT_EQ(errorOf("command: t\nimages: {r: {file: r.png, truth: {}}}"),
               "c.yaml:2:34: program: image 'r': truth is {}; allowed: a file, or parameters that "
               "are not the case's");

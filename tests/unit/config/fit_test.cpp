@@ -106,9 +106,9 @@ TEST_F(FitTest, FindsAColumnByTheLabelsOfAllItsAxes) {
     EXPECT_EQ(errorOf("grass", "mean_better"),
               "DIR/zju/a.yaml:9:57: fit: 'a': the printed cell is of method 'better', the cases of "
               "'conventional'; a fit sees what compares no methods");
-    EXPECT_EQ(errorOf("grass", "worst_conventional"),
-              "DIR/zju/a.yaml:9:57: fit: 'a': the column is redundant_pct, the printed cell "
-              "min_pct");
+    EXPECT_EQ(
+        errorOf("grass", "worst_conventional"),
+        "DIR/zju/a.yaml:9:57: fit: 'a': the column is redundant_pct, the printed cell min_pct");
 }
 
 TEST_F(FitTest, RefusesMethodsThatThePaperComparesEvenIfItMeasuresThem) {
@@ -127,9 +127,9 @@ TEST_F(FitTest, RefusesCellsThatAreNotThere) {
     EXPECT_EQ(errorOf("grass", "plane"),
               "DIR/zju/a.yaml:9:57: fit: 'a': the printed cell is of method '', the cases of "
               "'conventional'; a fit sees what compares no methods");
-    EXPECT_EQ(errorOf("grass", "plain_min"),
-              "DIR/zju/a.yaml:9:57: fit: 'a': the column is redundant_pct, the printed cell "
-              "min_pct");
+    EXPECT_EQ(
+        errorOf("grass", "plain_min"),
+        "DIR/zju/a.yaml:9:57: fit: 'a': the column is redundant_pct, the printed cell min_pct");
     const std::string start =
         "sweep_of: c\ntitle: t\ntechnique: x\nparams: {method: conventional}\n"
         "layout: {rows: method, columns: {a: redundant_pct}}\n";

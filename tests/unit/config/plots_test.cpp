@@ -59,25 +59,21 @@ TEST_F(PlotTest, BadAxes) {
     const std::string head = "DIR/zju/a.yaml:6:";
     EXPECT_EQ(plotError("{y: aa}"), head + "9: plot 1 needs 'x'");
     EXPECT_EQ(plotError("{x: size}"), head + "9: plot 1 needs 'y'");
-    EXPECT_EQ(plotError("{x: scene, y: aa}"),
-              head +
-                  "13: plot 1: x is row axis 'scene', whose s is no number; allowed: size, aa, "
-                  "bb");
-    EXPECT_EQ(plotError("{x: siz, y: aa}"),
-              head +
-                  "13: plot 1: x is 'siz', neither a row axis nor a column; did you mean "
-                  "'size'?");
-    EXPECT_EQ(plotError("{x: width, y: aa}"),
-              head +
-                  "13: plot 1: x is 'width', neither a row axis nor a column; allowed: size, "
-                  "aa, bb");
+    EXPECT_EQ(
+        plotError("{x: scene, y: aa}"),
+        head + "13: plot 1: x is row axis 'scene', whose s is no number; allowed: size, aa, bb");
+    EXPECT_EQ(
+        plotError("{x: siz, y: aa}"),
+        head + "13: plot 1: x is 'siz', neither a row axis nor a column; did you mean 'size'?");
+    EXPECT_EQ(
+        plotError("{x: width, y: aa}"),
+        head + "13: plot 1: x is 'width', neither a row axis nor a column; allowed: size, aa, bb");
     EXPECT_EQ(plotError("{x: size, y: cc}"),
               head + "22: plot 1: unknown column 'cc'; allowed: aa, bb");
     EXPECT_EQ(plotError("{x: size, y: [aa, aa], by: scene}"),
               head + "27: plot 1: column 'aa' stands twice");
-    EXPECT_EQ(plotError("{x: size, y: []}"), head +
-                                                 "22: plot 1: y is []; allowed: a column, or a "
-                                                 "list");
+    EXPECT_EQ(plotError("{x: size, y: []}"),
+              head + "22: plot 1: y is []; allowed: a column, or a list");
     EXPECT_EQ(plotError("{x: size, y: aa, log: [z]}"),
               head + "32: plot 1: log is z; allowed: x | y");
     EXPECT_EQ(plotError("{x: size, y: aa, log: [x, x]}"),
@@ -91,10 +87,9 @@ TEST_F(PlotTest, BadAxes) {
 
 TEST_F(PlotTest, EveryRowAxisHasItsPlace) {
     const std::string head = "DIR/zju/a.yaml:6:";
-    EXPECT_EQ(plotError("{x: size, y: aa}"),
-              head +
-                  "9: plot 1: row axis 'scene' has no place; allowed: in by or panels, or one "
-                  "value in at");
+    EXPECT_EQ(plotError("{x: size, y: aa}"), head +
+                                                 "9: plot 1: row axis 'scene' has no place; "
+                                                 "allowed: in by or panels, or one value in at");
     EXPECT_EQ(plotError("{x: size, y: aa, at: {scene: [s, t]}}"),
               head +
                   "9: plot 1: row axis 'scene' has no place; allowed: in by or panels, or one "

@@ -140,10 +140,9 @@ TEST_F(ExperimentTest, CellFormats) {
         head + "format is \"{mean:.2d}\"; allowed: number formats such as {mean:.2f} ";
     EXPECT_THAT(formatError("{mean:.2d}"), AnyOf(ofNumbers + "(invalid type specifier)",
                                                  ofNumbers + "(invalid format specifier)"));
-    EXPECT_EQ(formatError("{mean:999999999f}"),
-              head +
-                  "format is \"{mean:999999999f}\"; allowed: number formats such as {mean:.2f} "
-                  "(too long)");
+    EXPECT_EQ(formatError("{mean:999999999f}"), head +
+                                                    "format is \"{mean:999999999f}\"; allowed: "
+                                                    "number formats such as {mean:.2f} (too long)");
     EXPECT_EQ(formatError("mean"),
               head + "format is mean; allowed: a statistic in braces, as {median:.4g}");
     EXPECT_EQ(formatError("{mean"), head + "format is \"{mean\"; allowed: a } for every {");
@@ -252,11 +251,10 @@ TEST_F(ExperimentTest, PrintedParameters) {
               "DIR/zju/a.yaml:6:16: printed.at: 'measure.repeats'; allowed: a parameter, scene, "
               "output.width, output.height, output.frames");
     EXPECT_EQ(loadError(at("{output.frames: all}")),
-              "DIR/zju/a.yaml:6:31: printed.at: output.frames is all; allowed: a whole number, 1 "
-              "… 1000000");
+              "DIR/zju/a.yaml:6:31: printed.at: output.frames is all; allowed: a whole number, 1 … "
+              "1000000");
     EXPECT_EQ(loadError(at("{output.width: 20000}")),
-              "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: 1 "
-              "… 16384");
+              "DIR/zju/a.yaml:6:30: printed.at: output.width is 20000; allowed: 1 … 16384");
     EXPECT_EQ(loadError(at("{grid: 16}")),
               "DIR/zju/a.yaml:6:22: printed.at: 'grid' is swept; allowed: what all cases share");
     EXPECT_EQ(loadError("table: p/1\ntitle: t\nprinted: {values: \"a\\n1\", at: {grid: 1}}\n"),
@@ -313,11 +311,10 @@ TEST_F(ExperimentTest, BadClaims) {
                   "exact, tolerance, crossover, same_mean");
     EXPECT_EQ(claimError("{says: s, order: aa < bb, bound: aa}"),
               head + "32: claim 'C' is of two types, 'order' and 'bound'");
-    EXPECT_EQ(
-        claimError("{says: s, order: aa < bb, at_least: 1}"),
-        head +
-            "32: claim 'C': 'order' has no 'at_least'; allowed: 'ratio: b / a' of two of them, "
-            "or 'ratio: AXIS=b / AXIS=a', with a bound");
+    EXPECT_EQ(claimError("{says: s, order: aa < bb, at_least: 1}"),
+              head +
+                  "32: claim 'C': 'order' has no 'at_least'; allowed: 'ratio: b / a' of two of "
+                  "them, or 'ratio: AXIS=b / AXIS=a', with a bound");
     EXPECT_EQ(claimError("{says: s, ratio: bb / aa, at_least: 1}"), "no error");
     EXPECT_EQ(claimError("{says: s, exact: aa, equals: 1, at_most: 2}"),
               head + "38: claim 'C': 'exact' has no 'at_most'; allowed: 'bound: a' with it");
@@ -365,10 +362,9 @@ TEST_F(ExperimentTest, BadClaimsOverAxes) {
               head + "3: claim 'C' needs 'over'");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb}"),
               head + "3: claim 'C' needs at_least, more_than, at_most, less_than or direction");
-    EXPECT_EQ(claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
-              head +
-                  "33: claim 'C': 'scen' is neither a row axis nor a column; did you mean "
-                  "'scene'?");
+    EXPECT_EQ(
+        claimError("{says: s, trend: aa, over: scen, direction: decreasing}"),
+        head + "33: claim 'C': 'scen' is neither a row axis nor a column; did you mean 'scene'?");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: down}"),
               head + "48: claim 'C': direction is down; allowed: increasing | decreasing");
     EXPECT_EQ(claimError("{says: s, trend: aa, over: bb, direction: increasing, strictly: maybe}"),
@@ -427,10 +423,9 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
         return errorWith(layout + "{says: s, bound: aa, less_than: 1, " + keys + "}");
     };
     const std::string head = "DIR/zju/a.yaml:7:";
-    EXPECT_EQ(error("origin: mine"),
-              head +
-                  "49: claim 'C': origin is mine; allowed: document | derived | ours | "
-                  "definition | calibrated | existence");
+    EXPECT_EQ(error("origin: mine"), head +
+                                         "49: claim 'C': origin is mine; allowed: document | "
+                                         "derived | ours | definition | calibrated | existence");
     EXPECT_EQ(error("same_as: D"), head + "50: claim 'C': same_as is D; allowed: TABLE CLAIM");
     EXPECT_EQ(error("bound_from: paper"),
               head + "53: claim 'C': bound_from is paper; allowed: print | text | ours");
@@ -440,10 +435,9 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
     EXPECT_EQ(errorWith(layout + "{says: s, order: aa < bb, bound_from: print}"),
               head + "44: claim 'C': bound_from, and there is no number in what it requires");
     EXPECT_EQ(error("because: {verdict: fails}"), head + "50: claim 'C': because needs 'reason'");
-    EXPECT_EQ(error("because: {verdict: holds, reason: r}"),
-              head +
-                  "60: claim 'C': because: verdict is holds; allowed: fails | ambiguous | "
-                  "unmeasured");
+    EXPECT_EQ(
+        error("because: {verdict: holds, reason: r}"),
+        head + "60: claim 'C': because: verdict is holds; allowed: fails | ambiguous | unmeasured");
     EXPECT_EQ(error("because: [{verdict: fails, reason: r, device: cpu}]"),
               head + "87: claim 'C': because: device is cpu; allowed: software | gpu");
     const auto known = [&](const std::string& first, const std::string& second) {
@@ -452,8 +446,7 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
     };
     const std::string rule =
         "; allowed: one for each device, profile and kind of scenes, what is of more behind what "
-        "is "
-        "of less";
+        "is of less";
     EXPECT_EQ(known("", ""), head +
                                  "80: claim 'C': because is of any device, any profile, and an "
                                  "earlier one of any device, any profile" +
@@ -463,16 +456,15 @@ TEST_F(ExperimentTest, ClaimsSayWhoseTheyAreAndWhatIsKnown) {
                   "96: claim 'C': because is of any device, quick, and an earlier one of any "
                   "device, quick" +
                   rule);
-    EXPECT_EQ(known("", ", device: gpu"),
-              head +
-                  "80: claim 'C': because is of gpu, any profile, and an earlier one of any "
-                  "device, any profile" +
-                  rule)
+    EXPECT_EQ(known("", ", device: gpu"), head +
+                                              "80: claim 'C': because is of gpu, any profile, and "
+                                              "an earlier one of any device, any profile" +
+                                              rule)
         << "never reached";
     EXPECT_EQ(known(", device: software", ", profile: quick"),
               head +
-                  "98: claim 'C': because is of any device, quick, and an earlier one of "
-                  "software, any profile" +
+                  "98: claim 'C': because is of any device, quick, and an earlier one of software, "
+                  "any profile" +
                   rule);
     EXPECT_EQ(known(", scenes: files", ", scenes: files"),
               head +
@@ -493,10 +485,8 @@ TEST_F(ExperimentTest, ProvenanceOfAClaim) {
         "table: zju/1\ntitle: t\ntechnique: voxelization\nsweep: {scene: [s]}\n"
         "layout: {rows: scene, columns: {aa: m}}\nclaims:\n"
         "  C: {says: s, bound: aa, more_than: 0, origin: derived, same_as: zju/2 D, bound_from: "
-        "print, "
-        "kind: "
-        "architectural, because: [{verdict: fails, profile: quick, reason: r, shown_by: s, scenes: "
-        "files}]}\n");
+        "print, kind: architectural, because: [{verdict: fails, profile: quick, reason: r, "
+        "shown_by: s, scenes: files}]}\n");
     const ClaimSpec& claim = table.claims.at(0);
     EXPECT_EQ(claim.origin, ClaimSpec::Origin::Derived);
     EXPECT_EQ(claim.sameAs, "zju/2 D");
@@ -542,8 +532,7 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
     EXPECT_EQ(error("order: [e=p, e=q], at: {e: p}}"),
               head + "40: claim 'C': at: unknown key 'e'; allowed: scene");
     const std::string columns =
-        "claim 'C': at: 'column' is no axis of the rows; columns are chosen "
-        "by 'of'";
+        "claim 'C': at: 'column' is no axis of the rows; columns are chosen by 'of'";
     EXPECT_EQ(error("order: [e=p, e=q], at: {column: aa}}"), head + "40: " + columns);
     const std::string named = "allowed: AXIS=VALUE, or words that one swept axis alone has";
     EXPECT_EQ(error("order: [p, q]}"), head + "24: claim 'C': order is p; " + named);
@@ -560,18 +549,16 @@ TEST_F(ExperimentTest, ClaimsAcrossARowAxisNameItsLabels) {
               head +
                   "33: claim 'C': 'of' is of a claim that compares rows; allowed: with AXIS=VALUE "
                   "/ AXIS=VALUE (e=p) or across: e | scene");
-    EXPECT_EQ(error("bound: aa, of: aa, at_most: 1}"),
-              head +
-                  "27: claim 'C': 'of' is of a claim that compares rows; allowed: across: e | "
-                  "scene");
+    EXPECT_EQ(
+        error("bound: aa, of: aa, at_most: 1}"),
+        head + "27: claim 'C': 'of' is of a claim that compares rows; allowed: across: e | scene");
     EXPECT_EQ(error("order: [e=p, scene=s]}"),
               head + "29: claim 'C': order: 'e' and 'scene' are two axes; allowed: values of one");
     EXPECT_EQ(error("order: [e=p, e=rrr]}"),
               head + "29: claim 'C': 'rrr' is no column (columns: p, q)");
-    EXPECT_EQ(error("order: [e=p]}"),
-              head +
-                  "23: claim 'C': order is [e=p]; allowed: a < b < … | [AXIS=VALUE, "
-                  "AXIS=VALUE, …]");
+    EXPECT_EQ(
+        error("order: [e=p]}"),
+        head + "23: claim 'C': order is [e=p]; allowed: a < b < … | [AXIS=VALUE, AXIS=VALUE, …]");
     EXPECT_EQ(error("order: [e=p, e=q], across: e}"),
               head + "43: claim 'C': across, and order names its axis");
     EXPECT_EQ(error("across: e, order: p < q}"),

@@ -68,10 +68,10 @@ TEST(Sweep, BadAxes) {
     EXPECT_EQ(sweepError("m: slices"),
               "a.yaml:1:4: axis 'm' is slices; allowed: a list, {range: [first, last, step]}, "
               "{log2: [first, last]}, or all, of a program's parameter that lists its values");
-    EXPECT_EQ(sweepError("m: {rnage: [1, 2]}"),
-              "a.yaml:1:4: axis 'm' is {rnage: [1, 2]}; allowed: a list, {range: [first, last, "
-              "step]}, {log2: [first, last]}, or all, of a program's parameter that lists its "
-              "values");
+    EXPECT_EQ(
+        sweepError("m: {rnage: [1, 2]}"),
+        "a.yaml:1:4: axis 'm' is {rnage: [1, 2]}; allowed: a list, {range: [first, last, step]}, "
+        "{log2: [first, last]}, or all, of a program's parameter that lists its values");
     EXPECT_EQ(sweepError("m: []"), "a.yaml:1:4: axis 'm' has no values");
     EXPECT_EQ(sweepError("m: [1, 2, 1.0]"), "a.yaml:1:11: axis 'm' has the value 1.0 twice");
     EXPECT_EQ(sweepError("m: {range: [1, 4, 0]}"),
@@ -100,8 +100,8 @@ TEST(Sweep, BadBlocks) {
               "a.yaml:1:8: zip is 1; allowed: a list of maps, axis: values");
     EXPECT_EQ(sweepError("{zip: {a: [1]}}"), "a.yaml:1:7: expected a list, found a map");
     EXPECT_EQ(sweepError("{list: [{m: 1}]}"),
-              "a.yaml:1:9: list is {m: 1}; allowed: a list of blocks, each a list of points "
-              "{axis: value}");
+              "a.yaml:1:9: list is {m: 1}; allowed: a list of blocks, each a list of points {axis: "
+              "value}");
     EXPECT_EQ(sweepError("{list: [[1]]}"),
               "a.yaml:1:10: a point of a list is 1; allowed: a map {axis: value}");
     EXPECT_EQ(sweepError("{list: [[{m: 1}], [{m: 2}]]}"),

@@ -89,9 +89,8 @@ TEST(Node, ParseErrorsSayWhere) {
     EXPECT_EQ(parseError("a: {b: [1, 2}\n"), "a.yaml:1:8: '[' is not closed");
     for (const char* text : {"a: {b: python3 {here}/p.py {n}}\n", "a: {b: e[n=4] / e}\n"}) {
         EXPECT_THAT(parseError(text),
-                    HasSubstr("within brackets and braces a text with some of its "
-                              "own, as {here}/program or error[n=4], stands in "
-                              "quotes"))
+                    HasSubstr("within brackets and braces a text with some of its own, as "
+                              "{here}/program or error[n=4], stands in quotes"))
             << text;
     }
     EXPECT_EQ(parseError("a: 1\nb: \"x\nc: \\\"y\n"), "a.yaml:2:4: \" is not closed");

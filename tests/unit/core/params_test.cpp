@@ -132,9 +132,9 @@ TEST(Params, BadTextsListsAndChoices) {
     EXPECT_EQ(errorText([&] { params.getText("name", "", {"n"}); }),
               "a.yaml:1:72: technique 'voxelization': name is [a]; allowed: text");
     Params zero = paramsOf(R"({name: "a\0b"})");
-    EXPECT_EQ(errorText([&] { zero.getText("name", "", {"n"}); }),
-              "a.yaml:1:8: technique 'voxelization': name has a byte of 0; allowed: text without "
-              "one");
+    EXPECT_EQ(
+        errorText([&] { zero.getText("name", "", {"n"}); }),
+        "a.yaml:1:8: technique 'voxelization': name has a byte of 0; allowed: text without one");
     EXPECT_EQ(errorText([] { paramsOf("[1]"); }),
               "a.yaml:1:1: technique 'voxelization': parameters are a list; allowed: a map");
 }

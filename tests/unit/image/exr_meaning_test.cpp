@@ -229,12 +229,14 @@ TEST_F(ExrMeaning, WholeNumbersThatFloatsRoundAreSaid) {
         return readExr(path("id.exr")).notes;
     };
     EXPECT_EQ(notes(1U << 24), std::vector<std::string>{}) << "a float holds it";
-    EXPECT_EQ(notes((1U << 24) + 1),
-              std::vector<std::string>{"channel 'id' holds whole numbers up to 16777217; above "
-                                       "16777216 they are rounded"});
-    EXPECT_EQ(notes(4'000'000'000U),
-              std::vector<std::string>{"channel 'id' holds whole numbers up to 4000000000; above "
-                                       "16777216 they are rounded"});
+    EXPECT_EQ(
+        notes((1U << 24) + 1),
+        std::vector<std::string>{
+            "channel 'id' holds whole numbers up to 16777217; above 16777216 they are rounded"});
+    EXPECT_EQ(
+        notes(4'000'000'000U),
+        std::vector<std::string>{
+            "channel 'id' holds whole numbers up to 4000000000; above 16777216 they are rounded"});
 }
 
 TEST_F(ExrMeaning, AttributesThatAreNotUsedAreNamed) {

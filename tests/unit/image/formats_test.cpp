@@ -230,12 +230,12 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
                         .starts_with("DIR/d.hdr: the file ends early in "))
             << size;
     }
-    EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE"),
-              "DIR/d.hdr: the file ends early in its header: bytes needed from byte 10 on: 1, "
-              "found: 0");
-    EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\n\n-Y 2 +X 1\n" + std::string(6, '\2')),
-              "DIR/d.hdr: the file ends early in row 2 of 2: bytes needed from byte 28 on: 1, "
-              "found: 0");
+    EXPECT_EQ(
+        errorOf("d.hdr", "#?RADIANCE"),
+        "DIR/d.hdr: the file ends early in its header: bytes needed from byte 10 on: 1, found: 0");
+    EXPECT_EQ(
+        errorOf("d.hdr", "#?RADIANCE\n\n-Y 2 +X 1\n" + std::string(6, '\2')),
+        "DIR/d.hdr: the file ends early in row 2 of 2: bytes needed from byte 28 on: 1, found: 0");
 }
 
 TEST_F(Formats, TargaIsSrgb) {
@@ -305,9 +305,9 @@ TEST_F(Formats, TargasFourthByteIsSaidWhereItIsNoAlpha) {
         std::vector<std::string>{"left out: its pixels' fourth byte, which it calls no alpha"});
     EXPECT_EQ(notesOf(0x20, "\1\2\3\4\5\6\7\4"), none) << "the same in each";
     EXPECT_EQ(notesOf(0x28, "\1\2\3\4\5\6\7\x8"), none) << "alpha";
-    EXPECT_EQ(errorOf("b.tga", fileOf(0x20, "\1\2\3\4\5")),
-              "DIR/b.tga: the file ends early in its pixels: bytes needed from byte 18 on: 8, "
-              "found: 5");
+    EXPECT_EQ(
+        errorOf("b.tga", fileOf(0x20, "\1\2\3\4\5")),
+        "DIR/b.tga: the file ends early in its pixels: bytes needed from byte 18 on: 8, found: 5");
 }
 
 /// One pixel: blue, green, red, alpha of 20, 40, 100, 128.
@@ -574,10 +574,10 @@ TEST_F(Formats, OtherTiffFilesAreRefused) {
               "RGB, with or without alpha, of 8 or 16 bits or 16 or 32 bit floats");
     for (const int bits : {1, 2, 4, 12}) {
         EXPECT_EQ(refusalOf({.channels = 1, .bits = bits}),
-                  fmt::format("DIR/a.tif: 1 × {} bits a pixel (sample format 1, photometric 1); "
-                              "allowed: grey or RGB, with or without alpha, of 8 or 16 bits or 16 "
-                              "or 32 bit floats",
-                              bits));
+                  fmt::format(
+                      "DIR/a.tif: 1 × {} bits a pixel (sample format 1, photometric 1); allowed: "
+                      "grey or RGB, with or without alpha, of 8 or 16 bits or 16 or 32 bit floats",
+                      bits));
     }
     EXPECT_EQ(refusalOf({.bits = 32, .isFloat = 1, .orientation = ORIENTATION_RIGHTTOP}),
               "DIR/a.tif: orientation 6; allowed: 1 (from the top) and 4 (from the bottom)");
@@ -588,9 +588,9 @@ TEST_F(Formats, OtherTiffFilesAreRefused) {
     for (std::size_t size = 4; size < whole.size(); size += 11) {
         EXPECT_TRUE(errorOf("b.tif", whole.substr(0, size)).starts_with("DIR/b.tif: ")) << size;
     }
-    EXPECT_EQ(errorOf("b.tif", test::cutTiff()),
-              "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: "
-              "3");
+    EXPECT_EQ(
+        errorOf("b.tif", test::cutTiff()),
+        "DIR/b.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: 3");
 }
 
 TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {

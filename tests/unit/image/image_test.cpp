@@ -107,13 +107,12 @@ TEST_F(Png, RefusesTruncatedFiles) {
         const auto path = folder.write("a.png", whole.substr(0, size));
         return errorText([&] { readPng8(path); }, folder.path());
     };
+    EXPECT_EQ(error(40),
+              "DIR/a.png: the file ends early in the head of a chunk: bytes needed from byte 33 "
+              "on: 8, found: 7");
     EXPECT_EQ(
-        error(40),
-        "DIR/a.png: the file ends early in the head of a chunk: bytes needed from byte 33 on: "
-        "8, found: 7");
-    EXPECT_EQ(error(20),
-              "DIR/a.png: the file ends early in chunk IHDR: bytes needed from byte 16 on: 13, "
-              "found: 4");
+        error(20),
+        "DIR/a.png: the file ends early in chunk IHDR: bytes needed from byte 16 on: 13, found: 4");
 }
 
 TEST_F(Png, RefusesHeadersThatDeclareTooMuch) {
@@ -300,9 +299,9 @@ TEST_F(Exr, RefusesBrokenFiles) {
             << size;
     }
     folder.write("a.exr", whole.substr(0, 11));
-    EXPECT_EQ(errorText([&] { readExr(path); }, folder.path()),
-              "DIR/a.exr: the file ends early in its header: bytes needed from byte 11 on: 1, "
-              "found: 0");
+    EXPECT_EQ(
+        errorText([&] { readExr(path); }, folder.path()),
+        "DIR/a.exr: the file ends early in its header: bytes needed from byte 11 on: 1, found: 0");
 }
 
 TEST_F(Exr, RefusesHeadersThatDeclareTooMuch) {
@@ -315,8 +314,7 @@ TEST_F(Exr, RefusesHeadersThatDeclareTooMuch) {
     const auto path = folder.write("a.exr", content);
     EXPECT_EQ(
         errorText([&] { readExr(path); }, folder.path()),
-        "DIR/a.exr: the header declares 29952 x 29952 pixels of 16 bytes, too many for a file "
-        "of " +
+        "DIR/a.exr: the header declares 29952 x 29952 pixels of 16 bytes, too many for a file of " +
             std::to_string(content.size()) + " bytes");
 }
 

@@ -101,9 +101,9 @@ TEST(ImageError, RefusesWhatCannotBeCompared) {
     bad.at(2, 1) = std::numeric_limits<float>::quiet_NaN();
     EXPECT_EQ(errorText([&] { maxAbsoluteError(ImageF(3, 2, 1), bad); }),
               "the second image holds nan at pixel (2, 1)");
-    EXPECT_EQ(errorText([] { structuralSimilarity(ImageF(10, 20, 3), ImageF(10, 20, 3)); }),
-              "structural similarity needs images of at least 11x11 pixels, found 10x20 with 3 "
-              "channels");
+    EXPECT_EQ(
+        errorText([] { structuralSimilarity(ImageF(10, 20, 3), ImageF(10, 20, 3)); }),
+        "structural similarity needs images of at least 11x11 pixels, found 10x20 with 3 channels");
 }
 
 }  // namespace

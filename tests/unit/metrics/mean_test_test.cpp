@@ -94,8 +94,8 @@ Count countOf(const char* name, int trials, double level, const Noise& noise, in
         count.alarms += !test.isUnlike && test.p <= level ? 1 : 0;
     }
     std::printf(
-        "  %s, %zu × %d against %zu × %d samples, bias %.3g %%: %.2f %% alarms at %g %%, "
-        "%.2f %% unlike\n",
+        "  %s, %zu × %d against %zu × %d samples, bias %.3g %%: %.2f %% alarms at %g %%, %.2f %% "
+        "unlike\n",
         name, seedsA, samplesA, kSeeds, samplesB, 100.0 * bias, 100.0 * count.alarms / trials,
         100.0 * level, 100.0 * count.unlike / trials);
     return count;

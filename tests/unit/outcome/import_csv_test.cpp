@@ -122,10 +122,9 @@ TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
     EXPECT_EQ(refusal("n,value\n1,2\n"),
               "DIR/a.csv:1: no column 'metric' (columns: n, value); needed: metric, value; or "
               "--metric COLUMN=UNIT for each column of numbers");
-    EXPECT_EQ(
-        refusal("n;metric;value\n"),
-        "DIR/a.csv:1: no column 'metric' (columns: n;metric;value); needed: metric, value; or "
-        "--metric COLUMN=UNIT for each column of numbers");
+    EXPECT_EQ(refusal("n;metric;value\n"),
+              "DIR/a.csv:1: no column 'metric' (columns: n;metric;value); needed: metric, value; "
+              "or --metric COLUMN=UNIT for each column of numbers");
     EXPECT_EQ(refusal("n,metric,value,n\n"), "DIR/a.csv:1: two columns 'n'");
     EXPECT_EQ(refusal("n,,metric,value\n"), "DIR/a.csv:1: column 2 has no name");
     EXPECT_EQ(refusal("a,a.b,metric,value\n"),

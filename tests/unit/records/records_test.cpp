@@ -66,10 +66,9 @@ using Records = FolderTest;
 TEST_F(Records, WriteTheDocumentedColumns) {
     const auto path = folder.path() / "records.csv";
     RecordWriter(path).append({sample("abc", 0.1)});
-    EXPECT_EQ(readFile(path),
-              std::string(kHeader) +
-                  "3,abc,zju2005/2.1,voxelization,worksheet,models/duck,1,2,3,timing,"
-                  "rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
+    EXPECT_EQ(readFile(path), std::string(kHeader) +
+                                  "3,abc,zju2005/2.1,voxelization,worksheet,models/"
+                                  "duck,1,2,3,timing,rasterization,gpu_time_ms,ms,0.1,ok,,1\n");
 }
 
 TEST_F(Records, ReadBackAsWritten) {
@@ -157,10 +156,10 @@ TEST_F(Records, MalformedRowsAreErrorsWithTheirLine) {
         "; what stands before it is whole, and stays by: sed -i '3,$d' DIR/records.csv";
     EXPECT_EQ(error(kHeader + good + "3,c,t\n"),
               "DIR/records.csv:3: expected 17 columns, found 3" + cut);
-    EXPECT_EQ(error(kHeader + good + "garbage \"\n" + good),
-              "DIR/records.csv:3: expected a comma or the end of the line after 'garbage ', "
-              "found '\"'" +
-                  cut);
+    EXPECT_EQ(
+        error(kHeader + good + "garbage \"\n" + good),
+        "DIR/records.csv:3: expected a comma or the end of the line after 'garbage ', found '\"'" +
+            cut);
     EXPECT_EQ(error(kHeader + good + "2,c,t,q,m,s,0,0,0,timing,p,x,ms,1,ok,,1\n"),
               "DIR/records.csv:3: expected records of schema 3, found 2" + cut);
     EXPECT_EQ(error(kHeader + good.substr(0, good.size() - 2) + "2\n3,c,t\n"),
@@ -228,11 +227,10 @@ TEST_F(Records, AWriterStopsBeforeWhatIsNotRead) {
         const std::size_t bytes = readFile(path).size();
         const std::size_t ofUnit = (bytes - std::string(kHeader).size()) / 3;
         EXPECT_THROW(writer.requireRoom({sample("def", 1.0)}), FullError);
-        EXPECT_EQ(
-            errorText([&] { writer.append(unit(3)); }, folder.path()),
-            "DIR/records.csv: would have 133 rows and " + std::to_string(bytes + ofUnit) +
-                " bytes; at most 100 rows and 17179869184 bytes are read. Measure the rest in "
-                "a run of its own (--only, --shard)");
+        EXPECT_EQ(errorText([&] { writer.append(unit(3)); }, folder.path()),
+                  "DIR/records.csv: would have 133 rows and " + std::to_string(bytes + ofUnit) +
+                      " bytes; at most 100 rows and 17179869184 bytes are read. Measure the rest "
+                      "in a run of its own (--only, --shard)");
     }
     EXPECT_EQ(readRecords(path).size(), 99U);
     RecordWriter again(path, 101);  // rows of before count

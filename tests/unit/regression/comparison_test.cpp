@@ -418,9 +418,9 @@ TEST(Comparison, ANumberOfOneProcessASideWithoutASeedCannotTell) {
     };
     const Difference once = told(sideOf({0.5}), sideOf({0.6}), {"a"});
     EXPECT_EQ(once.verdict, SeriesVerdict::CannotTell);
-    EXPECT_EQ(once.reason,
-              "one process of each side, and no seed is declared; two a side tell whether they "
-              "differ");
+    EXPECT_EQ(
+        once.reason,
+        "one process of each side, and no seed is declared; two a side tell whether they differ");
     EXPECT_EQ(told(sideOf({0.5}), sideOf({0.6}), {}).verdict, SeriesVerdict::Changed)
         << "of a seed";
     EXPECT_EQ(told(sideOf({0.5, 0.5}), sideOf({0.6}), {"a"}).verdict, SeriesVerdict::Changed);

@@ -116,9 +116,8 @@ TEST_F(Pictures, OneThatEachProcessMakesAlikeStillChanges) {
     }
     const Difference once = only(true);
     EXPECT_EQ(once.verdict, SeriesVerdict::CannotTell);
-    EXPECT_THAT(once.reason,
-                HasSubstr("(0 allowed); one process of each side, and no seed is declared; two a "
-                          "side tell whether they differ"));
+    EXPECT_THAT(once.reason, HasSubstr("(0 allowed); one process of each side, and no seed is "
+                                       "declared; two a side tell whether they differ"));
     records["a"].push_back(records["a"].front());
     records["a"].back().process = 1;
     EXPECT_EQ(only(true).verdict, SeriesVerdict::Changed);
@@ -141,9 +140,11 @@ TEST_F(Pictures, AChangedOneIsKeptWithTheMapOfDifferences) {
     }
     EXPECT_EQ(image::readPng8(kept + "-flip.png").width(), 16);
     const Comparison comparison{{changed}};
-    EXPECT_THAT(markdown(comparison), HasSubstr("[before](pictures/p-1/b-flat0-before.png), "
-                                                "[after](pictures/p-1/b-flat0-after.png), "
-                                                "[difference](pictures/p-1/b-flat0-flip.png))"));
+    EXPECT_THAT(
+        markdown(comparison),
+        HasSubstr(
+            "[before](pictures/p-1/b-flat0-before.png), [after](pictures/p-1/b-flat0-after.png), "
+            "[difference](pictures/p-1/b-flat0-flip.png))"));
     EXPECT_THAT(junitXml(comparison), HasSubstr("<failure message=\"changed: FLIP "));
     EXPECT_EQ(smallerIsBetterJson({changed}), "") << "no time";
 }

@@ -30,8 +30,8 @@ TEST(Summary, SaysHowManyAndWhich) {
               "| --- | ---: | ---: | ---: | ---: | --- |\n"
               "| p/1 mock \\<a\\> wall\\_time\\_ms | 10 | 12 ms | 1.200 [1.100, 1.300] | 0.02 | "
               "slower |\n"
-              "| p/1 mock c wall\\_time\\_ms | 10 | 10 ms | 1.000 [0.500, 2.000] | 0.02 | "
-              "cannot tell: the interval is too wide |\n");
+              "| p/1 mock c wall\\_time\\_ms | 10 | 10 ms | 1.000 [0.500, 2.000] | 0.02 | cannot "
+              "tell: the interval is too wide |\n");
 }
 
 TEST(Summary, WhatIsNotThereHasNoNumber) {
@@ -60,9 +60,10 @@ TEST(Summary, WhatNeitherSideHasIsCountedAndSkipped) {
          {.key = test::timeOf("b"), .verdict = SeriesVerdict::Failed, .reason = "crash: SIGSEGV"}}};
     EXPECT_FALSE(both.isAlarm());
     EXPECT_EQ(summaryLine(both.differences), "1 void on both sides, 1 failed on both sides");
-    EXPECT_NE(markdown(both).find("| p/1 mock b wall\\_time\\_ms | | | | | failed on both sides: "
-                                  "crash: SIGSEGV |\n"),
-              std::string::npos)
+    EXPECT_NE(
+        markdown(both).find(
+            "| p/1 mock b wall\\_time\\_ms | | | | | failed on both sides: crash: SIGSEGV |\n"),
+        std::string::npos)
         << markdown(both);
     const std::string xml = junitXml(both);
     EXPECT_NE(xml.find("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"2\""), std::string::npos)
@@ -76,8 +77,7 @@ TEST(Summary, AStepToSlowerIsAnAlarm) {
     SeriesStep faster = slower;
     faster.step.ratio = 0.9;
     EXPECT_EQ(stepLine(slower),
-              "step in p/1 mock a wall_time_ms: × 1.100 since night 19 of 30 "
-              "(chance 2e-07)");
+              "step in p/1 mock a wall_time_ms: × 1.100 since night 19 of 30 (chance 2e-07)");
     EXPECT_TRUE((Comparison{{}, {slower}}).isAlarm());
     EXPECT_FALSE((Comparison{{}, {faster}}).isAlarm());
     EXPECT_TRUE((Comparison{differences()}).isAlarm());

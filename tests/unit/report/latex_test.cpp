@@ -48,8 +48,7 @@ printed: {values: "scene,draw_ms\nmodels/duck,9.0"}
                 HasSubstr("{duck}\n& \\gfxrepro{zju2005/9.9/models-duck/draw_ms/printed}\n& "
                           "\\gfxrepro{zju2005/9.9/models-duck/draw_ms} \\\\\n"
                           "&\n& \\scriptsize (\\gfxrepro{zju2005/9.9/models-duck/draw_ms/low} "
-                          "\\ldots\\ "
-                          "\\gfxrepro{zju2005/9.9/models-duck/draw_ms/high}) \\\\\n"));
+                          "\\ldots\\ \\gfxrepro{zju2005/9.9/models-duck/draw_ms/high}) \\\\\n"));
     EXPECT_THAT(latex, HasSubstr("{zju2005/9.9/models-duck/draw_ms/bounds}{range}%\n"));
     EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lrr}\n\\toprule\n{scene}\n"
                                  "& \\multicolumn{2}{c}{{draw [ms]}} \\\\\n"
@@ -118,8 +117,9 @@ TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
     EXPECT_THAT(tableLatex(table), Not(HasSubstr("Note")));
     const std::string latex = tableLatex(table, {"imported: 5 % elsewhere"});
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{p/1/notes}{Note: imported: 5 \\% elsewhere.}%\n"));
-    EXPECT_THAT(latex, HasSubstr("%     \\par\\smallskip\\parbox{\\linewidth}"
-                                 "{\\gfxrepro{p/1/notes}}\n%   \\end{table*}\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("%     \\par\\smallskip\\parbox{\\linewidth}{\\gfxrepro{p/1/notes}}\n%   "
+                          "\\end{table*}\n"));
     EXPECT_THAT(latex, Not(HasSubstr("\n\\par")));
     EXPECT_THAT(latex, EndsWith("\\end{tabular}%\n")) << "nothing widens a box around it";
 }
@@ -133,9 +133,8 @@ TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
     cell.measured = "5";
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
-    EXPECT_THAT(latex,
-                HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} \\\\\n\\midrule\n{1}\n& "
-                          "\\gfxrepro{p/1/1/b} \\\\\n"));
+    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} "
+                                 "\\\\\n\\midrule\n{1}\n& \\gfxrepro{p/1/1/b} \\\\\n"));
     EXPECT_THAT(latex, Not(HasSubstr("printed")));
 }
 
@@ -151,9 +150,8 @@ TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
     const std::string latex = tableLatex(table);
     EXPECT_THAT(keysOf(latex), ElementsAre("p/1/1/b/printed"));
-    EXPECT_THAT(latex,
-                HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} \\\\\n\\midrule\n{1}\n& "
-                          "\\gfxrepro{p/1/1/b/printed} \\\\\n"));
+    EXPECT_THAT(latex, HasSubstr("\\begin{tabular}{lr}\n\\toprule\n{a}\n& {b} "
+                                 "\\\\\n\\midrule\n{1}\n& \\gfxrepro{p/1/1/b/printed} \\\\\n"));
 }
 
 /// Of a published table, too: a column for print stands beside what is printed alone.

@@ -121,16 +121,15 @@ TEST_F(Report, IsOneSafeFile) {
              "title=\"&lt;b&gt;&amp;|_%\">&lt;b&gt;&amp;|_%</th>",
              "title=\"models/duck\">duck <abbr title=\"another model in its place\">†</abbr>",
              "<span class=\"badge fails\"><span aria-hidden=\"true\">✗</span> fails</span>",
-             "<td title=\"padding\">padding</td><td>1 voxels</td><td>[0, 2]</td>"
-             "<td>not &lt;said&gt;</td>",
+             "<td title=\"padding\">padding</td><td>1 voxels</td><td>[0, 2]</td><td>not "
+             "&lt;said&gt;</td>",
              "<span class=\"status\">crash</span> — signal &lt;11&gt;",
              "cells without a value: 2 crash; 1 of its cases failed",
              "gfxrepro reproduce zju2005/9.9 --profile quick",
              "<pre class=\"command\">gfxrepro run &#39;a&lt;b&#39;</pre>\n<pre class=\"log\">ok",
              "<span class=\"ratio\" title=\"measured ÷ printed\">×0.5</span>",
              "<p class=\"parameters\">Of 2 printed cells of tables 2 were measured again: 2 at the "
-             "printed "
-             "parameters.</p>",
+             "printed parameters.</p>",
              "<p class=\"parameters\">Measured at the printed parameters.</p>\n<div",
          }) {
         EXPECT_THAT(html, HasSubstr(part));
@@ -146,8 +145,9 @@ TEST_F(Report, IsOneSafeFile) {
     for (std::size_t i = 0; i < digits.size(); i += 2) {
         digest += static_cast<char>(std::stoi(digits.substr(i, 2), nullptr, 16));
     }
-    EXPECT_THAT(html, HasSubstr("<meta http-equiv=\"Content-Security-Policy\" "
-                                "content=\"default-src 'none'; "));
+    EXPECT_THAT(
+        html,
+        HasSubstr("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "));
     EXPECT_THAT(html, HasSubstr("; script-src 'sha256-" + base64(digest) + "'\">"));
 }
 
@@ -160,8 +160,8 @@ TEST_F(Report, SaysWhyAStatementOfTheDocumentIsNotCounted) {
     run.claims[1].verdict = claims::Verdict::Holds;
     run.claims[1].rows = "1 of 2 values of <scene>";
     const std::string html = pageOf(run);
-    EXPECT_THAT(html, HasSubstr(">A, of the document; a time that counts of work decide; "
-                                "counted as zju2005/1 A</span>"));
+    EXPECT_THAT(html, HasSubstr(">A, of the document; a time that counts of work decide; counted "
+                                "as zju2005/1 A</span>"));
     EXPECT_THAT(html, HasSubstr(">B, of the document; a time that counts of work decide; on 1 of 2 "
                                 "values of &lt;scene&gt;</span>"));
     EXPECT_THAT(html, Not(HasSubstr("<li class=\"claim\"")));
@@ -211,11 +211,8 @@ TEST_F(Report, NoRatioAtOtherParameters) {
     EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Measured at light grid none (the "
                                 "config&#39;s 16).</p>\n<div"));
     EXPECT_THAT(html, HasSubstr(" title=\"at light grid none (the config&#39;s 16)\">8.0"));
-    EXPECT_THAT(
-        html,
-        HasSubstr(
-            "Of 2 printed cells of tables 2 were measured again: 2 at other parameters, which each "
-            "table names.</p>"));
+    EXPECT_THAT(html, HasSubstr("Of 2 printed cells of tables 2 were measured again: 2 at other "
+                                "parameters, which each table names.</p>"));
 
     run.experiments[0].paperCases[0].params = printed;
     judge(run, records());
@@ -236,9 +233,9 @@ TEST_F(Report, NoRatioAtOtherParameters) {
     judge(run, records());
     html = pageOf(run);
     EXPECT_THAT(html, Not(HasSubstr("class=\"ratio\"")));
-    EXPECT_THAT(html, HasSubstr("<p class=\"parameters\">Whether it was measured at the printed "
-                                "parameters is not known: the run&#39;s plan does not have "
-                                "them.</p>"));
+    EXPECT_THAT(html,
+                HasSubstr("<p class=\"parameters\">Whether it was measured at the printed "
+                          "parameters is not known: the run&#39;s plan does not have them.</p>"));
 }
 
 TEST_F(Report, CellsNameTheirCases) {
@@ -368,8 +365,8 @@ layout:
     judge(run, maker.records());
     records::ImageWriter(folder.path()).append(images);
     const std::string html = pageOf(run);
-    EXPECT_THAT(html, HasSubstr("<th scope=\"col\">truth</th><th scope=\"col\">coarse</th>"
-                                "<th scope=\"col\">fine</th></tr></thead>"));
+    EXPECT_THAT(html, HasSubstr("<th scope=\"col\">truth</th><th scope=\"col\">coarse</th><th "
+                                "scope=\"col\">fine</th></tr></thead>"));
     std::vector<std::string> order;
     for (const char* part :
          {">duck</th></tr>", "data-title=\"models/duck coarse\" data-name=\"truth\"",
@@ -413,10 +410,9 @@ TEST_F(Report, ShowsTheDocumentsPicturesAndFoldsTheOthers) {
     EXPECT_EQ(orderOf({}), "truth result | classes_0 reflection ");
     EXPECT_EQ(orderOf({"classes"}), "classes_0 | truth result reflection ");
     EXPECT_EQ(orderOf({"no_such"}), "truth result | classes_0 reflection ");
-    EXPECT_THAT(
-        readFile(folder.path() / "report.html"),
-        HasSubstr("None of these cases saved the picture 'no_such', which `shows` names; they "
-                  "saved classes_0, reflection, result, truth."));
+    EXPECT_THAT(readFile(folder.path() / "report.html"),
+                HasSubstr("None of these cases saved the picture 'no_such', which `shows` names; "
+                          "they saved classes_0, reflection, result, truth."));
 }
 
 TEST_F(Report, HeadsOfSeveralLevelsAndLabelsStandOnce) {
@@ -441,12 +437,11 @@ layout:
     judge(run, maker.records());
     const std::string html = pageOf(run);
     for (const char* part : {
-             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th>"
-             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
+             "<th class=\"group\" scope=\"colgroup\" colspan=\"2\">one layer</th><th "
+             "class=\"group\" scope=\"colgroup\" colspan=\"2\">two layers</th>",
              "title=\"one_layer_draw_ms\">draw <span class=\"sub\">[ms]</span>",
              "<th scope=\"rowgroup\" class=\"first\" rowspan=\"2\" "
-             "title=\"outdoor/bird_nest\">bird "
-             "nest</th>",
+             "title=\"outdoor/bird_nest\">bird nest</th>",
          }) {
         EXPECT_THAT(html, HasSubstr(part));
     }
@@ -604,8 +599,7 @@ TEST_F(Report, FirstScreenSaysWhatReproduced) {
              "<h3>Later</h3>",
              "<span class=\"says\">no</span> <span class=\"soft code\"><a "
              "href=\"#zju2005-9.9:B\">B</a>, of the document; a time that counts of work "
-             "decide</span>\n<p><span "
-             "class=\"soft\">why: </span>",
+             "decide</span>\n<p><span class=\"soft\">why: </span>",
              "the time is of another machine (",
              "<h3>Earlier</h3>",
              "<p><span class=\"soft\">shown by </span><a "
@@ -641,8 +635,10 @@ TEST_F(Report, WhatIsWithinTheNoiseIsGrey) {
     const std::string html = pageOf(run);
     EXPECT_THAT(html, HasSubstr("<p class=\"told\">A is faster than B.</p>"));
     EXPECT_LT(html.find("A is faster than B."), html.find("<table class=\"results\">"));
-    EXPECT_THAT(html, HasSubstr("<summary>Remarks: 1</summary>\n<p><span class=\"soft\"></span>C "
-                                "and B cannot be"));
+    EXPECT_THAT(
+        html,
+        HasSubstr(
+            "<summary>Remarks: 1</summary>\n<p><span class=\"soft\"></span>C and B cannot be"));
     EXPECT_THAT(html, ContainsRegex("<td class=\"num soft\"[^>]*>8.0"));
     EXPECT_THAT(html, HasSubstr("a grey ratio is within the noise"));
 }
@@ -655,19 +651,16 @@ TEST_F(Report, RunsStandSideBySide) {
     runs[1].tables[0].notes.emplace_back("Noise of this one.");
     writeReport(out.path() / "both.html", runs);
     const std::string html = readFile(out.path() / "both.html");
-    EXPECT_THAT(html, HasSubstr("<th class=\"sub\" scope=\"col\">printed</th>"
-                                "<th class=\"sub\" scope=\"col\">A</th>"
-                                "<th class=\"sub\" scope=\"col\">B</th>"));
+    EXPECT_THAT(html, HasSubstr("<th class=\"sub\" scope=\"col\">printed</th><th class=\"sub\" "
+                                "scope=\"col\">A</th><th class=\"sub\" scope=\"col\">B</th>"));
     EXPECT_THAT(html,
                 HasSubstr("<li class=\"claim uncounted differs\" data-verdict=\"holds fails\""))
         << "claim A, 8 against 12";
     for (const char* part : {
              "<p class=\"parameters\"><b>A</b> Of 2 printed cells of tables 2 were measured again: "
-             "2 at "
-             "the printed parameters.</p>",
+             "2 at the printed parameters.</p>",
              "<p class=\"parameters\"><b>B</b> Of 2 printed cells of tables 2 were measured again: "
-             "2 at "
-             "other parameters, which each table names.</p>",
+             "2 at other parameters, which each table names.</p>",
              "<p class=\"parameters\"><b>A</b> Measured at the printed parameters.</p>\n"
              "<p class=\"parameters\"><b>B</b> Measured at light grid none (the config&#39;s "
              "16).</p>",
@@ -712,11 +705,11 @@ TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
 
 TEST_F(Report, KeptVerdictsStandBesideARun) {
     const TemporaryFolder a, kept;
-    const auto file =
-        kept.write("claims.csv", kClaimsHeader +
-                                     "A,,zju2005/9.9,gpu,quick,,,,fails,,12,draw_ms ≤ 10,-2,,,bias "
-                                     "(of 3 tried),,,\n"
-                                     "Z,,zju2005/1.1,gpu,quick,,,,holds,,1,x,1,,,,,,\n");
+    const auto file = kept.write(
+        "claims.csv",
+        kClaimsHeader +
+            "A,,zju2005/9.9,gpu,quick,,,,fails,,12,draw_ms ≤ 10,-2,,,bias (of 3 tried),,,\n"
+            "Z,,zju2005/1.1,gpu,quick,,,,holds,,1,x,1,,,,,,\n");
     ReportRun other;
     other.folder = kept.path();
     other.context = kContext;

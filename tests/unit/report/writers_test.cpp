@@ -59,12 +59,12 @@ TEST(Writers, TableFiles) {
     writeTables(run.folder.path(), tables::buildTables({writtenExperiment()}, writtenRecords()));
     const std::string csv = run.read("tables/zju2005-9.9.csv");
     EXPECT_THAT(
-        csv, StartsWith("scene,source,error_printed,error_mean_measured,error_mean_low,"
-                        "error_mean_high,error_mean_bounds,error_max_measured,error_max_low,"
-                        "error_max_high,error_max_bounds,error_status,error_at_printed,"
-                        "draw_ms_printed,draw_ms_measured,draw_ms_low,draw_ms_high,draw_ms_bounds,"
-                        "draw_ms_status,draw_ms_at_printed,parameters\n"
-                        "models/duck,stand-in,3.00/106,2,1,4,range,4,1,4,range,ok,yes,"));
+        csv,
+        StartsWith("scene,source,error_printed,error_mean_measured,error_mean_low,error_mean_high,"
+                   "error_mean_bounds,error_max_measured,error_max_low,error_max_high,error_max_"
+                   "bounds,error_status,error_at_printed,draw_ms_printed,draw_ms_measured,draw_ms_"
+                   "low,draw_ms_high,draw_ms_bounds,draw_ms_status,draw_ms_at_printed,parameters\n"
+                   "models/duck,stand-in,3.00/106,2,1,4,range,4,1,4,range,ok,yes,"));
     EXPECT_THAT(
         csv,
         HasSubstr(",ok,yes,9.0,8,8,8,95 % interval,ok,yes,Measured at the printed parameters\n"));
@@ -86,8 +86,8 @@ TEST(Writers, TableFiles) {
                 HasSubstr("\\gfxreproset{zju2005/9.9}{Measured at the printed parameters.}%\n"));
     EXPECT_THAT(
         latex,
-        HasSubstr("\\gfxreproset{zju2005/9.9/notes}{\\gfxrepro{zju2005/9.9} Repeats or "
-                  "processes came to different numbers, and no seed is declared: error.}%\n"));
+        HasSubstr("\\gfxreproset{zju2005/9.9/notes}{\\gfxrepro{zju2005/9.9} Repeats or processes "
+                  "came to different numbers, and no seed is declared: error.}%\n"));
     EXPECT_THAT(latex, HasSubstr("\\textless{}b\\textgreater{}\\&\\textbar{}\\_\\%"));
 }
 
@@ -155,8 +155,9 @@ printed: {calibrated: [{scene: models/duck, column: error}], values: "scene,erro
     const std::string latex = run.read("tables/zju2005-9.9.tex");
     EXPECT_THAT(latex,
                 HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/error/calibrated}{yes}%\n"));
-    EXPECT_THAT(latex, HasSubstr("& \\gfxrepro{zju2005/9.9/models-duck/error}"
-                                 "\\textsuperscript{\\ddag}\n&"));
+    EXPECT_THAT(
+        latex,
+        HasSubstr("& \\gfxrepro{zju2005/9.9/models-duck/error}\\textsuperscript{\\ddag}\n&"));
     EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\ddag} " + legend + "}%\n"));
 }
 
@@ -181,10 +182,11 @@ layout: {rows: scene, columns: {error: {metric: error, format: "{median:.0f}"}, 
     const std::string markdown = run.read("tables/zju2005-9.9.md");
     EXPECT_THAT(markdown, HasSubstr("| duck | 2 | 4§ |\n| bunny | 3 | 5 |\n\n§ " + legend));
     const std::string latex = run.read("tables/zju2005-9.9.tex");
-    EXPECT_THAT(latex, HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw/clock}"
-                                 "{0.345 and 1.98 GHz}%\n"));
-    EXPECT_THAT(latex, HasSubstr("\\gfxrepro{zju2005/9.9/models-duck/draw}"
-                                 "\\textsuperscript{\\S} \\\\\n"));
+    EXPECT_THAT(
+        latex,
+        HasSubstr("\\gfxreproset{zju2005/9.9/models-duck/draw/clock}{0.345 and 1.98 GHz}%\n"));
+    EXPECT_THAT(latex,
+                HasSubstr("\\gfxrepro{zju2005/9.9/models-duck/draw}\\textsuperscript{\\S} \\\\\n"));
     EXPECT_THAT(latex, HasSubstr("\\textsuperscript{\\S} " + legend + "}%\n"));
 }
 
@@ -210,18 +212,13 @@ TEST(Writers, ClaimFiles) {
         "claim,says,table,device,profile,origin,bound_from,kind,verdict,known,measured,required,"
         "margin,reason,because,rests_on,rows,holds_on,same_as\n"
         "A,\"a < b & \"\"c\"\"\",zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,holds,holds,\"8 "
-        "[8, "
-        "8]\",draw_ms ≤ 10,2,by the clock: "
-        "no CPU time was "
-        "recorded of these,,"
-        "none of the 5 tried,1 of 4 values of scene,,\n"
+        "[8, 8]\",draw_ms ≤ 10,2,by the clock: no CPU time was recorded of these,,none of the 5 "
+        "tried,1 of 4 values of scene,,\n"
         "B,no,zju2005/9.9,llvmpipe,quick,document,text,algorithmic,fails,fails,\"8 [8, "
-        "8]\",draw_ms "
-        "≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, measured\",not tried: "
-        "holds then,,,zju2005/1 A\n"
+        "8]\",draw_ms ≤ 1,-7,by the clock: no CPU time was recorded of these,\"slow, "
+        "measured\",not tried: holds then,,,zju2005/1 A\n"
         "C,maybe,zju2005/9.9,llvmpipe,quick,ours,ours,algorithmic,unmeasured,holds,,draw_ms ≤ "
-        "1,,draw_ms at "
-        "scene=models/lost: crash (signal <11>),,,,,\n");
+        "1,,draw_ms at scene=models/lost: crash (signal <11>),,,,,\n");
     const auto kept = claims::readClaims(run.folder.path() / "claims.csv");
     ASSERT_EQ(kept.size(), results.size());
     EXPECT_EQ(kept[1].origin, config::ClaimSpec::Origin::Document);
@@ -244,12 +241,12 @@ TEST(Writers, ClaimFiles) {
         "errors=\"1\" skipped=\"1\" time=\"0.250\" timestamp=\"2026-11-30T17:49:34\" "
         "hostname=\"localhost\">\n<properties/>\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a\" time=\"0.000\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\" time=\"0.250\">"
-        "<error message=\"crash: &lt;11&gt;\" type=\"crash\">crash: &lt;11&gt;</error></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\" time=\"0.000\">"
-        "<skipped message=\"missing: too slow\"/></testcase>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD\" "
-        "time=\"0.000\"/>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=a (2)\" "
+        "time=\"0.250\"><error message=\"crash: &lt;11&gt;\" type=\"crash\">crash: "
+        "&lt;11&gt;</error></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 scene=b\" "
+        "time=\"0.000\"><skipped message=\"missing: too slow\"/></testcase>\n"
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD\" time=\"0.000\"/>\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 text=\uFFFD (2)\" "
         "time=\"0.000\"/>\n"
         "<system-out/>\n<system-err/>\n</testsuite>\n"
@@ -257,13 +254,13 @@ TEST(Writers, ClaimFiles) {
         "errors=\"0\" skipped=\"1\" time=\"0.000\" timestamp=\"2026-11-30T17:49:34\" "
         "hostname=\"localhost\">\n<properties/>\n"
         "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim A\" time=\"0.000\"/>\n"
-        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim B\" time=\"0.000\">"
-        "<failure message=\"" +
+        "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim B\" "
+        "time=\"0.000\"><failure message=\"" +
             failed + "\" type=\"claim\">" + failed +
             "</failure></testcase>\n"
-            "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim C\" time=\"0.000\">"
-            "<skipped message=\"unmeasured: measured nothing, required draw_ms ≤ 1 (draw_ms at "
-            "scene=models/lost: crash (signal &lt;11&gt;))\"/></testcase>\n"
+            "  <testcase classname=\"zju2005/9.9\" name=\"zju2005/9.9 claim C\" "
+            "time=\"0.000\"><skipped message=\"unmeasured: measured nothing, required draw_ms ≤ 1 "
+            "(draw_ms at scene=models/lost: crash (signal &lt;11&gt;))\"/></testcase>\n"
             "<system-out/>\n<system-err/>\n</testsuite>\n"
             "</testsuites>\n");
 }

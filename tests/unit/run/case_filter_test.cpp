@@ -58,9 +58,9 @@ TEST(CaseFilter, SaysWhatThereIs) {
                   left({"step=1", "packed=true"});
               }),
               "--only: no case has all of step=1, packed=true");
-    EXPECT_EQ(errorText([] { left({"stp=3"}); }),
-              "--only stp=3: no case has 'stp'; did you mean 'step'? (axes here: packed, step, "
-              "view)");
+    EXPECT_EQ(
+        errorText([] { left({"stp=3"}); }),
+        "--only stp=3: no case has 'stp'; did you mean 'step'? (axes here: packed, step, view)");
     EXPECT_EQ(errorText([] { left({"case=cc"}); }),
               "--only case=cc: no case has an id that begins so; ids change with the program, "
               "'gfxrepro plan' shows them");

@@ -162,8 +162,7 @@ TEST(Ledger, TakesFramesFromWhatIsMeasured) {
               "DIR/t.yaml:6:26: assumption 'output.frames': range is [8, 9]; allowed: one that "
               "holds what is measured, 7");
     EXPECT_EQ(errorOf("output.frames: {range: [0, 9], why: open}\n"),
-              "DIR/t.yaml:6:27: assumption 'output.frames': range is 0; allowed: 1 "
-              "… 1000000");
+              "DIR/t.yaml:6:27: assumption 'output.frames': range is 0; allowed: 1 … 1000000");
     EXPECT_EQ(errorOf("output.frame: {why: open}\n"),
               "DIR/t.yaml:6:3: assumption 'output.frame' needs 'value': it is no parameter of "
               "technique 'still'; did you mean 'output.frames'?");
@@ -171,14 +170,12 @@ TEST(Ledger, TakesFramesFromWhatIsMeasured) {
 
 TEST(Ledger, RefusesWhatIsNotTheParameters) {
     const Ledger ledger;
-    EXPECT_EQ(
-        ledger.errorOf("assumptions:\n  bias: {value: 0.5, why: open}\n"),
-        "DIR/t.yaml:5:17: assumption 'bias': 'value' is filled in from the cases; allowed: range, "
-        "why");
-    EXPECT_EQ(
-        ledger.errorOf("assumptions:\n  bias: {unit: m, why: open}\n"),
-        "DIR/t.yaml:5:3: assumption 'bias': 'unit' is filled in from the cases; allowed: range, "
-        "why");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {value: 0.5, why: open}\n"),
+              "DIR/t.yaml:5:17: assumption 'bias': 'value' is filled in from the cases; allowed: "
+              "range, why");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  bias: {unit: m, why: open}\n"),
+              "DIR/t.yaml:5:3: assumption 'bias': 'unit' is filled in from the cases; allowed: "
+              "range, why");
     EXPECT_EQ(ledger.errorOf("assumptions:\n  biass: {range: [0, 1], why: open}\n"),
               "DIR/t.yaml:5:3: assumption 'biass' needs 'value': it is no parameter of technique "
               "'still'; did you mean 'bias'?");
@@ -204,8 +201,7 @@ TEST(Ledger, RefusesRangesWithoutWhatIsMeasured) {
     EXPECT_EQ(ledger.errorOf("params: {bias: 0.75}\n" + range), "no error");
     EXPECT_EQ(
         ledger.errorOf("params: {bias: 1}\nassumptions:\n  bias: {range: [1, 1], why: open}\n"),
-        "DIR/t.yaml:6:17: assumption 'bias': range is [1, 1]; allowed: one of more than one "
-        "value");
+        "DIR/t.yaml:6:17: assumption 'bias': range is [1, 1]; allowed: one of more than one value");
     EXPECT_EQ(ledger.errorOf("sweep: {bias: [0.25, 1]}\n" + range), "no error");
 }
 
@@ -216,16 +212,14 @@ TEST(Ledger, RefusesRangesThatACaseCannotTake) {
     EXPECT_EQ(ledger.errorOf("sweep: {static: [false, true]}\n"
                              "assumptions:\n  bias: {range: [0.5, 0], why: open}\n"),
               "DIR/t.yaml:6:23: bias is 0, but static needs one");
-    EXPECT_EQ(
-        ledger.errorOf("assumptions:\n  static: {range: either, why: open}\n"),
-        "DIR/t.yaml:5:19: assumption 'static': range is either; allowed: a list of values, or "
-        "[first, last]");
+    EXPECT_EQ(ledger.errorOf("assumptions:\n  static: {range: either, why: open}\n"),
+              "DIR/t.yaml:5:19: assumption 'static': range is either; allowed: a list of values, "
+              "or [first, last]");
     EXPECT_EQ(ledger.errorOf("assumptions:\n  output: {range: [0, 512], why: open}\n"),
               "DIR/t.yaml:5:20: assumption 'output': range is 0; allowed: 1 … 16384");
-    EXPECT_EQ(
-        ledger.errorOf("scene: grass\nassumptions:\n  scene: {range: [tee], why: open}\n"),
-        "DIR/t.yaml:6:19: assumption 'scene': range is tee; allowed: catalogued scenes; did you "
-        "mean 'tree'?");
+    EXPECT_EQ(ledger.errorOf("scene: grass\nassumptions:\n  scene: {range: [tee], why: open}\n"),
+              "DIR/t.yaml:6:19: assumption 'scene': range is tee; allowed: catalogued scenes; did "
+              "you mean 'tree'?");
     EXPECT_EQ(ledger.errorOf("sweep: {scene: [grass, scan]}\n"
                              "assumptions:\n  scene: {range: [tree], why: open}\n"),
               "DIR/t.yaml:6:18: assumption 'scene': range is [tree]; allowed: {NAME: [names]}, as "
@@ -263,12 +257,11 @@ TEST(Ledger, RefusesScenesThatTakeNobodysPlace) {
     }
     EXPECT_EQ(errorOf("grass: [tree, tree]"),
               head + "33: assumption 'scene': range is tree; allowed: each scene once");
-    EXPECT_EQ(errorOf("grass: [grass]"), head +
-                                             "26: assumption 'scene': range is [grass]; "
-                                             "allowed: another scene than grass");
-    EXPECT_EQ(errorOf("grass: [hills]"), head +
-                                             "27: assumption 'scene': range is hills; allowed: "
-                                             "models in the place of grass");
+    EXPECT_EQ(errorOf("grass: [grass]"),
+              head + "26: assumption 'scene': range is [grass]; allowed: another scene than grass");
+    EXPECT_EQ(
+        errorOf("grass: [hills]"),
+        head + "27: assumption 'scene': range is hills; allowed: models in the place of grass");
     EXPECT_EQ(errorOf("grass: []"),
               head + "26: assumption 'scene': range is []; allowed: a list of scenes");
     EXPECT_EQ(errorOf("grass: [tree@many]"),
@@ -392,9 +385,9 @@ TEST(Cases, RefuseParametersOfNoScene) {
         return errorText([&] { ledger.cases(ledger.load("scene: grass\n" + lines)); },
                          ledger.folder.path());
     };
-    EXPECT_EQ(errorOf("params_by_scene:\n  gras: {bias: 0.2}\n"),
-              "DIR/t.yaml:6:3: 'gras': no case has the scene of params_by_scene; did you mean "
-              "'grass'?");
+    EXPECT_EQ(
+        errorOf("params_by_scene:\n  gras: {bias: 0.2}\n"),
+        "DIR/t.yaml:6:3: 'gras': no case has the scene of params_by_scene; did you mean 'grass'?");
     EXPECT_EQ(
         errorOf("params_by_scene:\n  grass: {biass: 0.2}\n"),
         "DIR/t.yaml:6:11: technique 'still': unknown parameter 'biass'; did you mean 'bias'?");

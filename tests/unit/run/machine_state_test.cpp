@@ -233,9 +233,9 @@ TEST_F(MachineWatch, AddsUpWhatItSeesOfEachTimedTable) {
     run(untimed, 9.0);
     EXPECT_EQ(told.began, 4);
     EXPECT_EQ(told.ended, 4);
-    EXPECT_EQ(watch.warning(),
-              "the machine was not quiet: while t/1 was timed other processes took 20 % of 2 "
-              "processors");
+    EXPECT_EQ(
+        watch.warning(),
+        "the machine was not quiet: while t/1 was timed other processes took 20 % of 2 processors");
     const Json manifest = {{"machine_states", watch.states()}};
     EXPECT_THAT(run::machineStateNote(manifest, "t/1"), HasSubstr("took 20 % of 2 processors"));
     EXPECT_THAT(run::machineStateNote(manifest, "t/2"),

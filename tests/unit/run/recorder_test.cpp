@@ -153,8 +153,8 @@ TEST_F(Recorded, WhatCannotBeComparedIsAnError) {
               "16x16 with 3 channels");
     EXPECT_EQ(
         errorText([&] { recorder.image("truth", image::ImageF(4, 4, 3), {.truthOf = "other"}); }),
-        "image 'truth' is the truth of 'other', of which technique 'clustered_reflections' "
-        "does not declare that it has one");
+        "image 'truth' is the truth of 'other', of which technique 'clustered_reflections' does "
+        "not declare that it has one");
 }
 
 TEST_F(Recorded, KeepsLayersTruthsAndAttributes) {

@@ -203,8 +203,8 @@ TEST_F(Worker, AnAnswerWithoutEndIsACrashOfTheCase) {
 
 TEST_F(Worker, ALongAnswerIsReadWhole) {
     WorkerHandle& worker = begun(
-        "printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr "
-        "'\\0' x >&3; echo '\"}' >&3");
+        "printf '{\"unavailable\": \"' >&3; head -c 60000000 /dev/zero | tr '\\0' x >&3; echo "
+        "'\"}' >&3");
     const auto result = receive(worker);
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, records::Status::Unsupported);

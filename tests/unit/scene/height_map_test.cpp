@@ -174,19 +174,19 @@ TEST(HeightMap, ReadsSrtmTiles) {
 
     const fs::path cut = folder.path() / "cut.hgt";
     writeFileAtomic(cut, "12345");
-    EXPECT_EQ(messageOf(cut), cut.string() +
-                                  ": 5 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 "
-                                  "(3601 x 3601)");
+    EXPECT_EQ(messageOf(cut),
+              cut.string() +
+                  ": 5 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 (3601 x 3601)");
 }
 
 TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "a.raw";
     writeFileAtomic(path, bigEndian({-1, 2, 3, 4, 77, 6}));
-    EXPECT_EQ(messageOf(path), path.string() + ": a raw height map needs " + path.string() +
-                                   ".yaml with width (integer, 2 … 65537), height "
-                                   "(integer, 2 … 65537), type (u16 | i16 | f32), byte_order "
-                                   "(little | big), no_data (number)");
+    EXPECT_EQ(messageOf(path),
+              path.string() + ": a raw height map needs " + path.string() +
+                  ".yaml with width (integer, 2 … 65537), height (integer, 2 … 65537), type (u16 | "
+                  "i16 | f32), byte_order (little | big), no_data (number)");
     const fs::path sidecar = path.string() + ".yaml";
     writeFileAtomic(sidecar, "{width: 2, height: 3, type: i16, byte_order: big, no_data: 77}\n");
     const HeightMap map = loadHeightMap(path, {});
@@ -201,9 +201,9 @@ TEST(HeightMap, ReadsRawFilesBesideTheirSidecar) {
     writeFileAtomic(sidecar, "{width: 2, height: 3, type: f64}\n");
     EXPECT_EQ(messageOf(path), sidecar.string() + ":1:29: type is f64; allowed: u16 | i16 | f32");
     writeFileAtomic(sidecar, "{width: 2, height: 3, typ: f32}\n");
-    EXPECT_EQ(messageOf(path), sidecar.string() +
-                                   ":1:23: a raw height map's sidecar: unknown key 'typ'; did you "
-                                   "mean 'type'?");
+    EXPECT_EQ(messageOf(path),
+              sidecar.string() +
+                  ":1:23: a raw height map's sidecar: unknown key 'typ'; did you mean 'type'?");
 }
 
 /// `value` in four bytes at `at`, the first the highest.
@@ -248,8 +248,7 @@ TEST(HeightMap, RefusesPngsCutShortAndOfHugeHeaders) {
                   ": the header declares 65538 x 65538 pixels; 1 to 65537 a side are allowed");
     EXPECT_EQ(messageWithSide(65537),
               path.string() +
-                  ": the header declares 65537 x 65537 pixels of 8 bytes, too many for "
-                  "a file of " +
+                  ": the header declares 65537 x 65537 pixels of 8 bytes, too many for a file of " +
                   std::to_string(whole.size()) + " bytes");
 }
 
@@ -285,9 +284,9 @@ TEST(HeightMap, RefusesFilesOfOneSampleASide) {
     }
     const fs::path srtm = folder.path() / "a.hgt";
     writeFileAtomic(srtm, "12");
-    EXPECT_EQ(messageOf(srtm), srtm.string() +
-                                   ": 2 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 "
-                                   "(3601 x 3601)");
+    EXPECT_EQ(messageOf(srtm),
+              srtm.string() +
+                  ": 2 bytes; an SRTM tile has 2884802 (1201 x 1201) or 25934402 (3601 x 3601)");
 }
 
 TEST(HeightMap, NonSquareFilesAreServed) {

@@ -198,9 +198,9 @@ TEST_F(HeightRows, BrokenFilesLeaveNothingBehind) {
     EXPECT_TRUE(message("cut.png").starts_with(
         "DIR/cut.png: the file ends early in chunk IDAT: bytes needed from byte "));
     folder.write("cut.tif", test::cutTiff());
-    EXPECT_EQ(message("cut.tif"),
-              "DIR/cut.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, "
-              "found: 3");
+    EXPECT_EQ(
+        message("cut.tif"),
+        "DIR/cut.tif: the file ends early in strip 0: bytes needed from byte 122 on: 4, found: 3");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // and is not tried in memory
     folder.write("none.raw", std::string(2 * 70 * 150, '\x80'));
     folder.write("none.raw.yaml", "{width: 70, height: 150, type: i16, no_data: -32640}");
@@ -222,9 +222,9 @@ TEST_F(HeightRows, RefusesWhatCannotBeReadInPieces) {
               "DIR/wide.raw.yaml:1:9: width is 65538; allowed: 2 … 65537");
     folder.write("long.raw", std::string(4 * 20000, '\0'));
     folder.write("long.raw.yaml", "{width: 2, height: 20000, type: u16}");
-    EXPECT_EQ(errorText([&] { loadHeightMap(folder.path() / "long.raw", {}); }, folder.path()),
-              "DIR/long.raw: a height map of 2 x 20000 samples; allowed in memory: 2 to 16385 a "
-              "side");
+    EXPECT_EQ(
+        errorText([&] { loadHeightMap(folder.path() / "long.raw", {}); }, folder.path()),
+        "DIR/long.raw: a height map of 2 x 20000 samples; allowed in memory: 2 to 16385 a side");
     folder.write("file", "no folder");
     EXPECT_EQ(errorText(
                   [&] {

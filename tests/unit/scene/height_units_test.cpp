@@ -77,11 +77,11 @@ TEST_F(HeightUnits, ItemsOfMetadataAreReadAsXml) {
     };
     EXPECT_FLOAT_EQ(highest("<Item name='SCALE' sample='0' role='scale'>0.1</Item>"), 3.0F);
     EXPECT_FLOAT_EQ(highest("<Item role = \"scale\"\nname=\"SCALE\"> 1e-1 </Item>"), 3.0F);
-    EXPECT_FLOAT_EQ(highest("<!-- <Item sample=\"0\" role=\"scale\">0.5</Item> -->"
-                            "<Item sample=\"0\" role=\"scale\">0.1</Item>"),
+    EXPECT_FLOAT_EQ(highest("<!-- <Item sample=\"0\" role=\"scale\">0.5</Item> --><Item "
+                            "sample=\"0\" role=\"scale\">0.1</Item>"),
                     3.0F);
-    EXPECT_FLOAT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item>"
-                            "<Item sample=\"0\" role=\"scale\">0.1</Item>"),
+    EXPECT_FLOAT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item><Item sample=\"0\" "
+                            "role=\"scale\">0.1</Item>"),
                     3.0F);
     EXPECT_EQ(highest("<Item sample=\"1\" role=\"scale\">0.5</Item>"), 30.0F);
     EXPECT_EQ(highest("<Item name=\"role\" unrole=\"scale\">0.5</Item>"), 30.0F);
@@ -398,10 +398,9 @@ TEST_F(HeightUnits, SrtmTilesSayWhereTheyLieByTheirNames) {
     for (const char* name : {"a.hgt", "tile.hgt", "X60E007.hgt", "N90E007.hgt", "S91E007.hgt"}) {
         const HeightMap map = ofTile(name);
         EXPECT_EQ(map.spacingM.x, map.spacingM.y);
-        EXPECT_EQ(
-            map.spacingWarning,
-            "its name says no latitude, as that of N46E007.hgt does: its samples are drawn as "
-            "far apart from west to east as from north to south");
+        EXPECT_EQ(map.spacingWarning,
+                  "its name says no latitude, as that of N46E007.hgt does: its samples are drawn "
+                  "as far apart from west to east as from north to south");
     }
 }
 
@@ -422,9 +421,8 @@ TEST_F(HeightUnits, HeightsInFeetBecomeMetres) {
                     35.052F);  // 115 ft
     const auto unit = [&](const std::string& name) {
         const std::string metadata =
-            "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" "
-            "role=\"unittype\">" +
-            name + "</Item></GDALMetadata>";
+            "<GDALMetadata><Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">" + name +
+            "</Item></GDALMetadata>";
         return highest(metadata.c_str(), {});
     };
     for (const char* metre : {"m", "metre", "Metre", "METERS"}) {
@@ -505,9 +503,9 @@ TEST_F(HeightUnits, PngSaysHowLargeItsPixelsAre) {
         char* parameters[] = {zero, one};
         png_set_pCAL(png, info, purpose, 0, 15, PNG_EQUATION_LINEAR, 2, unit, parameters);
     });
-    EXPECT_EQ(loadHeightMap(path, {}).unitWarning,
-              "left out: what its values mean (chunk pCAL): heights are the numbers that are "
-              "stored");
+    EXPECT_EQ(
+        loadHeightMap(path, {}).unitWarning,
+        "left out: what its values mean (chunk pCAL): heights are the numbers that are stored");
 }
 
 TEST_F(HeightUnits, APngThatIsTurnedIsNone) {

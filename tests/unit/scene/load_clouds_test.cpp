@@ -258,9 +258,9 @@ TEST_F(LoadClouds, RefusesBrokenLas) {
     EXPECT_EQ(lasError(Las{.format = 2}.bytes(kSteps)),
               "DIR/a.las: has records of 20 bytes; a point of format 2 takes 26");
     EXPECT_EQ(lasError(Las{}.bytes({})), "DIR/a.las: no points");
-    EXPECT_EQ(lasError(Las{.scale = {1, 0, 1}}.bytes(kSteps)),
-              "DIR/a.las: its scale is 0 and its offset 0; finite numbers are allowed, of scales "
-              "but 0");
+    EXPECT_EQ(
+        lasError(Las{.scale = {1, 0, 1}}.bytes(kSteps)),
+        "DIR/a.las: its scale is 0 and its offset 0; finite numbers are allowed, of scales but 0");
     EXPECT_EQ(lasError(Las{.offset = {0, 2e9, 0}}.bytes(kSteps)),
               "DIR/a.las: point 0: a coordinate is 2e+09; -1e+09 to 1e+09 are allowed");
     std::string records = Las{.records = {{"x", 3}}}.bytes(kSteps);

@@ -107,9 +107,10 @@ TEST_F(PoseGltf, JointsShareAVertexByTheirWeights) {
     const Scene unheld = load();
     EXPECT_EQ(unheld.bounds().min, glm::vec3(0, 0, 8))
         << "the first joint holds what has no weights";
-    EXPECT_EQ(unheld.warnings,
-              std::vector<std::string>{"left out: weights that a skinned vertex lacks: the first "
-                                       "joint holds it (4 times)"});
+    EXPECT_EQ(
+        unheld.warnings,
+        std::vector<std::string>{
+            "left out: weights that a skinned vertex lacks: the first joint holds it (4 times)"});
     document_["skins"] = R"([{"joints":[1,2]}])";
 
     const int bad = add("VEC4", 4, {0, 1, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});

@@ -100,9 +100,9 @@ TEST_F(LoadGltf, ColoursAreFloatsOrNormalized) {
     folder_.write("square.bin", bytes);
     const Scene scene = load(document);
     EXPECT_EQ(scene.meshes.at(0).colors.at(1), glm::vec3(9, 0, 0));
-    EXPECT_EQ(scene.warnings, std::vector<std::string>{
-                                  "vertex colours reach 9, above the 1 of glTF; they are taken as "
-                                  "they are"});
+    EXPECT_EQ(scene.warnings,
+              std::vector<std::string>{
+                  "vertex colours reach 9, above the 1 of glTF; they are taken as they are"});
 }
 
 TEST_F(LoadGltf, ReadsStripsAndFansWithTheirOutside) {
@@ -352,13 +352,12 @@ TEST_F(LoadGltf, ReadsTexturesOfMaterials) {
     EXPECT_EQ(twoSets.metallicRoughnessTexture, -1);
     EXPECT_EQ(twoSets.normalTexture, -1);
     EXPECT_EQ(twoSets.emissiveTexture, 0);
-    EXPECT_EQ(scene.warnings,
-              (std::vector<std::string>{
-                  "material 'two sets': its metallic-roughness texture is left out, as it reads "
-                  "other texture coordinates than those before it",
-                  "material 'two sets': its normal texture is left out, as it reads other texture "
-                  "coordinates than those before it",
-                  "left out: the key 'materials.occlusionTexture'"}));
+    EXPECT_EQ(scene.warnings, (std::vector<std::string>{
+                                  "material 'two sets': its metallic-roughness texture is left "
+                                  "out, as it reads other texture coordinates than those before it",
+                                  "material 'two sets': its normal texture is left out, as it "
+                                  "reads other texture coordinates than those before it",
+                                  "left out: the key 'materials.occlusionTexture'"}));
 }
 
 TEST_F(LoadGltf, ReadsSamplers) {
@@ -581,10 +580,9 @@ TEST_F(LoadGltf, RefusesRangesThatAreNotThere) {
 TEST_F(LoadGltf, RefusesCoordinatesTooFarAway) {
     const float x = 3e38F;  // of vertex 2
     folder_.write("square.bin", squareBytes().replace(24, 4, reinterpret_cast<const char*>(&x), 4));
-    EXPECT_EQ(
-        error(text(square())),
-        "DIR/a.gltf: mesh 0 primitive 0: its box reaches to (3e+38, 0, 0); -1e+09 to 1e+09 are "
-        "allowed");
+    EXPECT_EQ(error(text(square())),
+              "DIR/a.gltf: mesh 0 primitive 0: its box reaches to (3e+38, 0, 0); -1e+09 to 1e+09 "
+              "are allowed");
 }
 
 TEST_F(LoadGltf, RefusesNodesThatAreNoTree) {

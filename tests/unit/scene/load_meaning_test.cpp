@@ -121,8 +121,8 @@ TEST_F(LoadMeaning, OfGltfNothingStandsTwice) {
     const std::string both = R"({"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],)";
     for (const char* part : {R"("translation":[1,0,0])", R"("scale":[1,1,1])"}) {
         EXPECT_EQ(gltfError("nodes", "[" + both + part + "}]"),
-                  "nodes[0].matrix is beside a translation, rotation or scale; allowed: one or "
-                  "the other");
+                  "nodes[0].matrix is beside a translation, rotation or scale; allowed: one or the "
+                  "other");
     }
     EXPECT_EQ(gltfError("nodes", "[" + both + R"("scale":null}])"), "no error");
 }
@@ -145,9 +145,9 @@ TEST_F(LoadMeaning, RestsOfGltfAreSaid) {
     document["cameras"] =
         R"([{"type":"perspective","perspective":{"yfov":1,"znear":0.5,"zfar":0.25}}])";
     const auto path = folder_.write("a.gltf", text(document));
-    EXPECT_EQ(errorText([&] { loadGltf(path); }, folder_.path()),
-              "DIR/a.gltf: camera 0: zfar 0.25 and znear 0.5; a zfar above znear, or none, is "
-              "allowed");
+    EXPECT_EQ(
+        errorText([&] { loadGltf(path); }, folder_.path()),
+        "DIR/a.gltf: camera 0: zfar 0.25 and znear 0.5; a zfar above znear, or none, is allowed");
     std::string json = text(square());
     json.resize((json.size() + 3) / 4 * 4, ' ');
     const auto word = [](std::size_t value) {

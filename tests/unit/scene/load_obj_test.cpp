@@ -286,8 +286,8 @@ TEST_F(LoadObj, SplitsByMaterial) {
     EXPECT_EQ(scene.textures.at(0), image::Image8(2, 1, 3, 128));
     EXPECT_NEAR(scene.materials.at(1).baseColor.a, 0.1F, 1e-6F);
     EXPECT_EQ(scene.materials.at(1).baseColorTexture, -1);
-    EXPECT_THAT(scene.warnings, Contains("left out: a material's opacity below 1, drawn "
-                                         "as solid (2 times)"));
+    EXPECT_THAT(scene.warnings,
+                Contains("left out: a material's opacity below 1, drawn as solid (2 times)"));
 }
 
 TEST_F(LoadObj, LivesWithoutItsMaterialFile) {

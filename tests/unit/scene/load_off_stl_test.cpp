@@ -192,10 +192,9 @@ TEST_F(LoadOffStl, RefusesBrokenStl) {
     EXPECT_EQ(stlError(binaryStl(2, "").substr(0, 150)),
               "DIR/a.STL: has 150 bytes; a binary STL file of its 2 facets has 184, one in text "
               "begins with 'solid'");
-    EXPECT_EQ(
-        stlError("short"),
-        "DIR/a.STL: has 5 bytes; a binary STL file of its 0 facets has 84, one in text begins "
-        "with 'solid'");
+    EXPECT_EQ(stlError("short"),
+              "DIR/a.STL: has 5 bytes; a binary STL file of its 0 facets has 84, one in text "
+              "begins with 'solid'");
     EXPECT_EQ(stlError("solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nendloop\n"),
               "DIR/a.STL:5: a facet of 1 corners; 3 are allowed");
     EXPECT_EQ(stlError("solid\nvertex 0 0\n"), "DIR/a.STL:2: the line lacks a number");

@@ -102,9 +102,9 @@ TEST_F(LoadPly, ReadsColoursByTheirTypeAndTexcoords) {
             "property float z\nproperty ushort red\nproperty float green\nproperty float blue\n"
             "property float " +
                 u + "\nproperty float " + v + "\n");
-        content = replaced(content, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n",
-                           "0 0 0 65535 .25 1 .5 1\n1 0 0 0 0 0 0 0\n1 1 0 0 0 0 0 0\n0 1 0 0 0 0 "
-                           "0 0\n");
+        content =
+            replaced(content, "0 0 0\n1 0 0\n1 1 0\n0 1 0\n",
+                     "0 0 0 65535 .25 1 .5 1\n1 0 0 0 0 0 0 0\n1 1 0 0 0 0 0 0\n0 1 0 0 0 0 0 0\n");
         const Mesh mesh = load(content).meshes.at(0);
         EXPECT_EQ(mesh.colors[0].r, 1.0F);
         EXPECT_NEAR(mesh.colors[0].g, 0.0509F, 1e-4F);  // 0.25 in sRGB
@@ -171,10 +171,10 @@ TEST_F(LoadPly, FillsConcavePolygons) {
 }
 
 TEST_F(LoadPly, ReadsEveryElementThatHasFaces) {
-    const std::string content = replaced(replaced(kAscii, "end_header",
-                                                  "element triangle 1\nproperty list uchar int "
-                                                  "vertex_indices\nend_header"),
-                                         "4 0 1 2 3", "3 0 1 2\n3 0 2 3");
+    const std::string content =
+        replaced(replaced(kAscii, "end_header",
+                          "element triangle 1\nproperty list uchar int vertex_indices\nend_header"),
+                 "4 0 1 2 3", "3 0 1 2\n3 0 2 3");
     EXPECT_EQ(load(content).triangleCount(), 2U);
 }
 

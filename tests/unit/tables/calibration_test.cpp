@@ -46,13 +46,12 @@ TEST(Fit, TakesTheRowWithTheLeastSquares) {
                 std::hypot(std::log(73.0 / 70), std::log(46.0 / 50)) / std::sqrt(2.0), 1e-12)
         << "numbers that are no shares are held against each other by their ratio";
     EXPECT_EQ(fit.rows[1].row, 0U);
-    EXPECT_THAT(
-        fitNotes(fit, table),
-        ElementsAre("rows of the fit that are not measured: 1",
-                    "Fitted to 2 printed cells, none of which compares methods: spread=2. Root "
-                    "mean square of the residuals 0.07 in logarithms; printed → measured: a of "
-                    "p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
-                    "Second best of 3 rows: spread=1, 0.11 in logarithms"));
+    EXPECT_THAT(fitNotes(fit, table),
+                ElementsAre("rows of the fit that are not measured: 1",
+                            "Fitted to 2 printed cells, none of which compares methods: spread=2. "
+                            "Root mean square of the residuals 0.07 in logarithms; printed → "
+                            "measured: a of p/1 70 → 73.00 (+3.00), b of p/2 50 → 46.00 (-4.00)",
+                            "Second best of 3 rows: spread=1, 0.11 in logarithms"));
     const std::string rms = fmt::format("{}", fit.rows[0].rms);
     EXPECT_EQ(fitCsv(fit, table),
               "spread,column,table,printed,measured,residual,rms,unit,edges\n2,a,p/1,70,73,3," +
@@ -85,8 +84,9 @@ TEST(Fit, TellsThatABetterRowMayLieBeyondTheGrid) {
     EXPECT_THAT(fit.edges, ElementsAre("spread 1 of 1 to 2"));
     EXPECT_THAT(fitNotes(fit, table),
                 Contains("The best row lies at the edge of what was tried: spread 1 of 1 to 2"));
-    EXPECT_THAT(fitCsv(fit, table), HasSubstr("1,8000,flat,a,p/1,70,73,3,0.1539713236471667,"
-                                              "in log-odds,spread 1 of 1 to 2\n"));
+    EXPECT_THAT(
+        fitCsv(fit, table),
+        HasSubstr("1,8000,flat,a,p/1,70,73,3,0.1539713236471667,in log-odds,spread 1 of 1 to 2\n"));
 }
 
 TEST(Fit, SaysNothingWithoutOne) {
@@ -110,10 +110,9 @@ TEST(Fit, IsSaidOnThePagesOfTheTablesThatItRead) {
     addNotes(keptCalibrations(folder.path()), tables);
     EXPECT_THAT(
         tables[0].notes,
-        ElementsAre(
-            "Calibrated blind, nest: spread 2 fitted to 2 printed cells that "
-            "compare no methods; of this table a 70 → 73.00 (root mean square of "
-            "all residuals 0.15 in log-odds; at the edge of what was tried: spread 2 of 1 to 2)"));
+        ElementsAre("Calibrated blind, nest: spread 2 fitted to 2 printed cells that compare no "
+                    "methods; of this table a 70 → 73.00 (root mean square of all residuals 0.15 "
+                    "in log-odds; at the edge of what was tried: spread 2 of 1 to 2)"));
     EXPECT_THAT(tables[1].notes, IsEmpty());
     EXPECT_THAT(keptCalibrations(folder.path() / "none"), IsEmpty());
 }

@@ -25,10 +25,9 @@ TEST(CellFormat, BadFormatsAreErrorsInTheirPlace) {
     const auto error = [](const std::string& text) {
         return errorText([&] { CellFormat(text, {"a.yaml", 3, 7}); });
     };
-    EXPECT_EQ(
-        error("{avg:.2f}"),
-        "a.yaml:3:7: format '{avg:.2f}': unknown statistic 'avg'; allowed: median, mean, min, "
-        "max, sum, count, rate, stddev, p95, p99");
+    EXPECT_EQ(error("{avg:.2f}"),
+              "a.yaml:3:7: format '{avg:.2f}': unknown statistic 'avg'; allowed: median, mean, "
+              "min, max, sum, count, rate, stddev, p95, p99");
     EXPECT_EQ(error("{mean"), "a.yaml:3:7: format '{mean': '{' without '}'");
     EXPECT_EQ(error("mean}"),
               "a.yaml:3:7: format 'mean}': '}' without '{'; write '}}' for a brace");

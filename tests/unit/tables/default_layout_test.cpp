@@ -101,9 +101,9 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
     config::Experiment experiment = sweepOf("{resolution: [32, 64]}");
     const auto notes = [&] { return buildTable(experiment, recordedAt({32, 64})).notes; };
     experiment.outputs.metrics.push_back({"key_frame_interval", "frame", "since the last"});
-    EXPECT_THAT(notes(), Contains("One frame of each case is measured: the key frame interval, and "
-                                  "whatever follows from frames before, needs several (`output: "
-                                  "{frames: 20}`)."));
+    EXPECT_THAT(notes(),
+                Contains("One frame of each case is measured: the key frame interval, and whatever "
+                         "follows from frames before, needs several (`output: {frames: 20}`)."));
     const auto saysSo = Contains(StartsWith("One frame"));
     experiment.outputs.metrics.back().name = "digest";  // which is recorded
     EXPECT_THAT(notes(), Not(saysSo));
@@ -160,10 +160,9 @@ TEST(DefaultLayout, WhatIsKnownOfMethodsIsToldAsItIs) {
     Recorded records = maker.records();
     for (records::Record& record : records) record.table = "sweep/s";
     for (config::Case& item : records.cases) item.experiment = "sweep/s";
-    for (const char* sweep :
-         {"{zip: [{method: [plain, fine, alike], samples: [16, 64, 32]}]}",
-          "{list: [[{method: plain, samples: 16}, {method: fine, samples: 64}, {method: alike, "
-          "samples: 32}]]}"}) {
+    for (const char* sweep : {"{zip: [{method: [plain, fine, alike], samples: [16, 64, 32]}]}",
+                              "{list: [[{method: plain, samples: 16}, {method: fine, samples: 64}, "
+                              "{method: alike, samples: 32}]]}"}) {
         const Table table = buildTable(sweepOf(sweep), records);
         EXPECT_THAT(labelsOf(table), ElementsAre("error_pct", "error ÷ plain"));
         EXPECT_EQ(table.rows[1].cells[1].measured, "0.25");
@@ -205,8 +204,8 @@ TEST(DefaultLayout, HoldsOnAgainstOff) {
         buildTable(sweepOf("{is_culled: [false, true]}"), timed(R"({{"is_culled": {}}})"));
     EXPECT_THAT(labelsOf(table), ElementsAre("frame_ms", "frame ÷ is culled false"));
     EXPECT_THAT(table.notes[0],
-                "frame: is culled true is faster than is culled false in the one "
-                "row (0.501 times its time).");
+                "frame: is culled true is faster than is culled false in the one row (0.501 times "
+                "its time).");
     EXPECT_THAT(labelsOf(buildTable(sweepOf("{is_culled: [false, true], method: [plain, fast]}"),
                                     timed(R"({{"is_culled": {}, "method": "{}"}})"))),
                 ElementsAre("frame_ms", "frame ÷ plain"));

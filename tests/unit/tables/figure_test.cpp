@@ -84,11 +84,11 @@ TEST(Figure, PanelsAreNamedWithoutFoldersThatAllCanDoWithout) {
         for (const std::string& scene : {first, second}) {
             maker.beginCase(scene, "{\"size\":1}").add("gpu_time_ms", {1.0});
         }
-        const config::Experiment experiment = experimentFrom(
-            "sweep: {scene: [" + first + ", " + second +
-            "], size: [1]}\nlayout: {rows: [scene, size], columns: {draw_ms: {metric: "
-            "gpu_time_ms}}, cell: \"{median:.1f}\"}\nplots: [{x: size, y: draw_ms, panels: "
-            "scene}]\n");
+        const config::Experiment experiment =
+            experimentFrom("sweep: {scene: [" + first + ", " + second +
+                           "], size: [1]}\nlayout: {rows: [scene, size], columns: {draw_ms: "
+                           "{metric: gpu_time_ms}}, cell: \"{median:.1f}\"}\nplots: [{x: size, y: "
+                           "draw_ms, panels: scene}]\n");
         const Figure figure = figureOf(experiment, maker.records());
         return figure.panels.at(0).title + "; " + figure.panels.at(1).title;
     };

@@ -136,9 +136,10 @@ TEST(FrameTimes, NoiseIsOfPairsMeasuredByTurns) {
 
 TEST(FrameTimes, OutliersAmongRoundsAndAmongFrames) {
     EXPECT_THAT(outlierTexts(timesOf(rounds({10, 10, 49, 10}))), ElementsAre());
-    EXPECT_THAT(outlierTexts(timesOf(rounds({10, 10, 55, 10}))),
-                ElementsAre("Outlier: frame 0 of models/duck took 55 ms in process 3, 5.5 times "
-                            "its fellows."));
+    EXPECT_THAT(
+        outlierTexts(timesOf(rounds({10, 10, 55, 10}))),
+        ElementsAre(
+            "Outlier: frame 0 of models/duck took 55 ms in process 3, 5.5 times its fellows."));
     // One process of a path: its frames are fellows.
     RecordMaker path;
     path.beginCase("bathroom", R"({"method":"reuse"})");
@@ -164,9 +165,9 @@ TEST(FrameTimes, ARowNamesTheOutlierOfAUsersOwnTable) {
             maker.process(i).add("wall_time_ms", {isLate ? 60.0 : 10.0});
         }
     }
-    EXPECT_THAT(buildTable(experiment, maker.records()).notes,
-                Contains("Outlier: frame 0 of light grid 8 took 60 ms in process 3, 6 "
-                         "times its fellows."));
+    EXPECT_THAT(
+        buildTable(experiment, maker.records()).notes,
+        Contains("Outlier: frame 0 of light grid 8 took 60 ms in process 3, 6 times its fellows."));
 }
 
 TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
@@ -183,20 +184,21 @@ TEST(FrameTimes, NotesSayWhatEndedTheRounds) {
               "about a time is decided. All rounds together have 60 s; `--set "
               "measure.time_budget_s=…` allows more.");
     EXPECT_EQ(first({9, 10, 10, 10, 10, 11}, measureOf(6)),
-              "Times of 6 rounds, as many as asked for; the CPU time of a frame is known to "
-              "±10 % or better.");
+              "Times of 6 rounds, as many as asked for; the CPU time of a frame is known to ±10 % "
+              "or better.");
     EXPECT_EQ(
         first({9.9, 9.9, 9.9, 10, 10, 10, 10, 10, 10, 10, 10, 10.1, 10.1, 10.1}, measureOf(6, 60)),
-        "Times of 14 rounds, until the times were known; the CPU time of a frame is known "
-        "to ±1 % or better (asked for: 5 %).");
+        "Times of 14 rounds, until the times were known; the CPU time of a frame is known to ±1 % "
+        "or better (asked for: 5 %).");
     EXPECT_THAT(first({9, 10, 10, 10, 10, 11}, measureOf(6, 60)),
                 HasSubstr("as many as the time allowed"));
     EXPECT_THAT(first({9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 12, 12, 12, 12, 12, 12, 12, 12, 12, 12},
                       measureOf(6, 60)),
                 HasSubstr("the most that are allowed"));
-    EXPECT_THAT(timeNotes(timesOf(rounds({10, 10, 10, 10, 10, 10})), measureOf(6)).at(1),
-                HasSubstr("Noise of this table: two equal cases would differ by up to 0 %, by CPU "
-                          "time 0 %."));
+    EXPECT_THAT(
+        timeNotes(timesOf(rounds({10, 10, 10, 10, 10, 10})), measureOf(6)).at(1),
+        HasSubstr(
+            "Noise of this table: two equal cases would differ by up to 0 %, by CPU time 0 %."));
 }
 
 TEST(FrameTimes, NotesStandUnderTablesOfTimes) {

@@ -45,8 +45,8 @@ TEST(Nearness, IsOfWhatIsPrintedAndMeasuredAtTheSameParameters) {
     EXPECT_EQ(nearnessLine({{near}}),
               "How near: 2 printed numbers that are no times were measured at the parameters that "
               "the document gives: 1 lies within 10 % of the printed ones, 1 within a factor of 2. "
-              "Of 1 time or rate, printed on another machine, none lies within 10 % of the "
-              "printed one, none within a factor of 2. Left out: 1 printed as 0.");
+              "Of 1 time or rate, printed on another machine, none lies within 10 % of the printed "
+              "one, none within a factor of 2. Left out: 1 printed as 0.");
 }
 
 TEST(Nearness, OtherParametersAndFittedCellsAreNoEvidence) {

@@ -51,8 +51,8 @@ TEST(Pooled, SomeRowsAndColumnsAreNamed) {
     EXPECT_THAT(average.notes,
                 Contains("Each number of row average is taken over method (oct, snorm)."));
     const Table column = tableWith(
-        "{rows: bits, columns: {oct: {metric: error, where: {method: "
-        "oct}}, both: {metric: error, where: {method: [oct, snorm]}}}}");
+        "{rows: bits, columns: {oct: {metric: error, where: {method: oct}}, both: {metric: error, "
+        "where: {method: [oct, snorm]}}}}");
     EXPECT_THAT(column.notes,
                 Contains("Each number of column both is taken over method (oct, snorm)."));
     const Table two = tableWith("{columns: {e: {metric: error}}}");
@@ -73,13 +73,11 @@ TEST(Pooled, EachColumnsOwnValuesAreSaid) {
                    maker.records())
             .notes;
     };
-    EXPECT_THAT(
-        notesOf("{columns: {old: {where: {method: [a, b]}}, new: {where: {method: [c, d]}}, "
-                "more: {metric: steps, where: {method: [a, b]}}, one: {where: "
-                "{method: a}}}, cell: {metric: error}}"),
-        ElementsAre("Each number of columns old, more is taken over method "
-                    "(a, b).",
-                    "Each number of column new is taken over method (c, d)."));
+    EXPECT_THAT(notesOf("{columns: {old: {where: {method: [a, b]}}, new: {where: {method: [c, "
+                        "d]}}, more: {metric: steps, where: {method: [a, b]}}, one: {where: "
+                        "{method: a}}}, cell: {metric: error}}"),
+                ElementsAre("Each number of columns old, more is taken over method (a, b).",
+                            "Each number of column new is taken over method (c, d)."));
     EXPECT_THAT(notesOf("{rows: {x: {where: {method: [a, b]}}, y: {where: {method: a}}}, columns: "
                         "{e: {metric: error}, most: {metric: error, where: {method: [c, d]}}}}"),
                 ElementsAre("Each number of column e in row x is taken over method (a, b).",
@@ -100,9 +98,10 @@ TEST(Pooled, AnAxisThatTheLayoutDoesNotNameIsRefused) {
               "allowed: as an axis of rows or columns, or in a 'where': {method: [oct, snorm]} "
               "takes its values together");
     EXPECT_EQ(refusalOf("{rows: [bits, method], columns: {e: {metric: error}}}"), "no error");
-    EXPECT_EQ(refusalOf("{rows: bits, columns: {e: {metric: error}}, cell: {where: {method: "
-                        "[oct, snorm]}}}"),
-              "no error");
+    EXPECT_EQ(
+        refusalOf(
+            "{rows: bits, columns: {e: {metric: error}}, cell: {where: {method: [oct, snorm]}}}"),
+        "no error");
     EXPECT_EQ(refusalOf("{rows: bits, columns: {oct: {metric: error, where: {method: oct}}, all: "
                         "{metric: error}}}"),
               "no error")

@@ -75,8 +75,7 @@ TEST(PrintedParameters, WhatIsPrintedLiesOverTheProfile) {
     };
     EXPECT_THAT(departuresAt("light_grid: 16, output.width: 512, output.frames: 1"), IsEmpty());
     EXPECT_THAT(
-        departuresAt("light_grid: 32, output.width: 640, output.frames: 500, "
-                     "scene: models/swan"),
+        departuresAt("light_grid: 32, output.width: 640, output.frames: 500, scene: models/swan"),
         ElementsAre(Departure{"scene", {"models/duck"}, {"models/swan"}},
                     Departure{"output", {"512×512"}, {"640×512"}},
                     Departure{"light_grid", {"16"}, {"32"}}, Departure{"frames", {"1"}, {"500"}}));
@@ -99,13 +98,13 @@ TEST(PrintedParameters, ANumberOfAConfigIsTheConfigs) {
     EXPECT_EQ(lineAt("", frames),
               "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (50).");
     EXPECT_EQ(lineAt("", "output.frames: {why: not said}"), lineAt("", frames));
-    EXPECT_EQ(lineAt("output.frames: 60", frames),
-              "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (printed "
-              "60).");
+    EXPECT_EQ(
+        lineAt("output.frames: 60", frames),
+        "Measured at output 8×8 (the config's 512×512), light grid 4 (16), frames 3 (printed 60).");
     EXPECT_EQ(lineAt("", "output: {range: [8, 512], why: not said}"), lineAt("", frames));
-    EXPECT_EQ(lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
-              "Measured at output 8×8 (printed 512×512), light grid 4 (the config's 16), frames 3 "
-              "(50).");
+    EXPECT_EQ(
+        lineAt("output.width: 512", "output: {range: [8, 512], why: not said}"),
+        "Measured at output 8×8 (printed 512×512), light grid 4 (the config's 16), frames 3 (50).");
 }
 
 TEST(PrintedParameters, DefaultsAreNotSaidToBePrinted) {
@@ -171,11 +170,9 @@ TEST(PrintedParameters, AreThePrintedOnesAsFarAsTheyAreGiven) {
     maker.add("gpu_time_ms", {8.0});
     EXPECT_EQ(parametersLine(buildTable(experiment, maker.records())),
               "Measured at n 1 (the config's 2); not given: output, bias.");
-    EXPECT_EQ(
-        printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
-        "Of 1 printed cell of tables 1 was measured again: 1 at the parameters that the document "
-        "gives, which "
-        "leaves some open.");
+    EXPECT_EQ(printedCellsLine(countPrintedCells({{experiment}}, {{table}})),
+              "Of 1 printed cell of tables 1 was measured again: 1 at the parameters that the "
+              "document gives, which leaves some open.");
 }
 
 constexpr const char* kGrid = R"(
@@ -209,10 +206,9 @@ TEST(PrintedParameters, RowsAreComparedWithTheSameRow) {
     EXPECT_EQ(parametersLine(table, table.rows[1]), "Measured at the printed parameters");
     PrintedCells count;
     count.add(experimentFrom(kGrid), table);
-    EXPECT_EQ(
-        printedCellsLine(count),
-        "Of 3 printed cells of tables 2 were measured again: 1 at the printed parameters; 1 at "
-        "other parameters, which each table names.");
+    EXPECT_EQ(printedCellsLine(count),
+              "Of 3 printed cells of tables 2 were measured again: 1 at the printed parameters; 1 "
+              "at other parameters, which each table names.");
 }
 
 /// A table of one row of measured cells beside printed values, which depart so.
@@ -250,10 +246,10 @@ TEST(PrintedParameters, LinesCountWhatIsGiven) {
     table.rows[0].cells.emplace_back().values.resize(1);
     table.rows[0].cells.back().printed = "1";
     table.rows[0].cells.back().departures = {{"n", {"1"}, {"2"}}};
-    EXPECT_EQ(parametersLine(table),
-              "Measured at the printed parameters in 1 of 4 cells, the printed parameters as far "
-              "as they are given (not: bias, view) in 2 of 4 cells, in the others at n 1 (printed "
-              "2).");
+    EXPECT_EQ(
+        parametersLine(table),
+        "Measured at the printed parameters in 1 of 4 cells, the printed parameters as far as they "
+        "are given (not: bias, view) in 2 of 4 cells, in the others at n 1 (printed 2).");
 }
 
 TEST(PrintedParameters, LinesNameOnlyWhatDiffers) {

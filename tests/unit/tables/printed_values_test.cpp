@@ -10,8 +10,7 @@ namespace {
 std::string errorOf(const std::string& rows) {
     const std::string body =
         "layout: {rows: scene, columns: {ms: {metric: m, format: \"{mean:.2f}\"}, both: {metric: "
-        "m, "
-        "format: \"{mean:.1f}/{max:.1f}\"}}}\n"
+        "m, format: \"{mean:.1f}/{max:.1f}\"}}}\n"
         "printed:\n  values: |\n    scene,ms,both\n    # a remark\n" +
         rows;
     const config::Experiment whole = experimentFrom("sweep: {scene: [duck, bunny]}\n" + body);

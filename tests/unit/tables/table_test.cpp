@@ -275,9 +275,9 @@ TEST(Table, TimesOfTheQualityLaneStayOut) {
     EXPECT_EQ(table.rows[0].cells[1].measured, "") << "a pass that others have";
     EXPECT_EQ(table.rows[1].cells[1].status, records::Status::Ambiguous);
     EXPECT_EQ(table.rows[1].cells[1].measured, "not timed");
-    EXPECT_EQ(table.rows[1].cells[1].message,
-              "measured in the quality lane, where cases run side by side; a time needs the timing "
-              "lane");
+    EXPECT_EQ(
+        table.rows[1].cells[1].message,
+        "measured in the quality lane, where cases run side by side; a time needs the timing lane");
     EXPECT_EQ(table.rows[1].cells[0].measured, "7");
 }
 
@@ -667,10 +667,9 @@ TEST(Table, OneSeedIsOneSampleHoweverItsPicturesDiffer) {
             maker.process(process).add("wall_time_ms", {10.0 + 0.1 * process});
             maker.add("rmse", {0.1 + 1e-6 * process}, "", "1");
         }
-        return buildTable(
-                   experimentFrom("scene: models/duck\nlayout: {columns: {e: {metric: rmse}, "
-                                  "ms: {metric: wall_time_ms}}}\n"),
-                   maker.records())
+        return buildTable(experimentFrom("scene: models/duck\nlayout: {columns: {e: {metric: "
+                                         "rmse}, ms: {metric: wall_time_ms}}}\n"),
+                          maker.records())
             .rows[0]
             .cells[column];
     };
@@ -693,10 +692,10 @@ TEST(Table, WhatScattersWithoutASeedIsSaid) {
     EXPECT_THAT(table.notes, Not(Contains(HasSubstr("no seed is declared"))));
     using Seeds = config::Measure::Seeds;
     const Table unseeded = tableOfSeeds(Seeds::None, Seeds::None, true);
-    EXPECT_THAT(unseeded.notes,
-                Contains("Repeats or processes came to different numbers, and no seed is declared: "
-                         "error, last error, pooled error, ms at half, cost, errors, of pooled, "
-                         "speedup."));
+    EXPECT_THAT(
+        unseeded.notes,
+        Contains("Repeats or processes came to different numbers, and no seed is declared: error, "
+                 "last error, pooled error, ms at half, cost, errors, of pooled, speedup."));
 }
 
 /// Six of eight processes took 100 ms, two took 800.
@@ -795,12 +794,12 @@ layout:
                                    maker.records());
     EXPECT_THAT(
         table.notes,
-        IsSupersetOf({"In column most [ms] the max is taken in each process; a number and "
-                      "its bounds are of the median process.",
-                      "In column frame [ms] the mean is taken in each process; a number and "
-                      "its bounds are of the median process.",
-                      "In column load [ms] the mean is over processes, and has no interval: "
-                      "what is rare moves it by any amount. No claim is decided by it."}));
+        IsSupersetOf({"In column most [ms] the max is taken in each process; a number and its "
+                      "bounds are of the median process.",
+                      "In column frame [ms] the mean is taken in each process; a number and its "
+                      "bounds are of the median process.",
+                      "In column load [ms] the mean is over processes, and has no interval: what "
+                      "is rare moves it by any amount. No claim is decided by it."}));
     EXPECT_EQ(std::ranges::count_if(
                   table.notes, [](const std::string& note) { return note.starts_with("In "); }),
               3);

@@ -77,11 +77,10 @@ TEST(Catalog, KeepsResampledHeightsByWhatTheyAreMadeOf) {
     const fs::path cache = folders.folder.path() / "cache";
     ASSERT_EQ(setenv("XDG_CACHE_HOME", cache.c_str(), 1), 0);
     const auto source = [&](int detailM) {
-        folders.entry(
-            fmt::format("scene: m/x\ndoc: an x\nsources:\n"
-                        "  - {{height_map: a.raw, spacing_m: 8, resample_to: 9, "
-                        "detail_m: {}, seed: 1}}\n",
-                        detailM));
+        folders.entry(fmt::format(
+            "scene: m/x\ndoc: an x\nsources:\n"
+            "  - {{height_map: a.raw, spacing_m: 8, resample_to: 9, detail_m: {}, seed: 1}}\n",
+            detailM));
     };
     folders.folder.write("assets/a.raw.yaml", "{width: 2, height: 2, type: u16}");
     folders.folder.write("assets/a.raw", std::string("\0\1\0\2\0\3\0\4", 8));
@@ -323,8 +322,8 @@ TEST(Catalog, UserFilesAreRelativeToTheFileThatNamesThem) {
               "DIR/mine/table.yaml:2:3: scene file my.FBX: unknown extension '.fbx'; .ply, .obj, "
               ".gltf, .glb, .off, .stl, .xyz and .las are allowed");
     EXPECT_EQ(folders.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.fbx}]\n"),
-              "DIR/scenes/m/x.yaml:3:18: file a.fbx: unknown extension '.fbx'; .ply, .obj, "
-              ".gltf, .glb, .off, .stl, .xyz and .las are allowed");
+              "DIR/scenes/m/x.yaml:3:18: file a.fbx: unknown extension '.fbx'; .ply, .obj, .gltf, "
+              ".glb, .off, .stl, .xyz and .las are allowed");
 }
 
 TEST(Catalog, TurnsAUsersModelUp) {
@@ -413,9 +412,9 @@ TEST(Catalog, RefusesBadEntries) {
     const Folders f;
     EXPECT_EQ(f.errorOf("scene: m/z\ndoc: d\nsources: [{file: a.ply}]\n"),
               "DIR/scenes/m/x.yaml:1:8: scene is 'm/z', but the file's place names it 'm/x'");
-    EXPECT_EQ(f.errorOf("scene: m/x\nsource: []\n"),
-              "DIR/scenes/m/x.yaml:2:1: scene entry: unknown key 'source'; did you mean "
-              "'sources'?");
+    EXPECT_EQ(
+        f.errorOf("scene: m/x\nsource: []\n"),
+        "DIR/scenes/m/x.yaml:2:1: scene entry: unknown key 'source'; did you mean 'sources'?");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\n"),
               "DIR/scenes/m/x.yaml:1:1: scene entry needs 'sources'");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: []\n"),
@@ -424,9 +423,9 @@ TEST(Catalog, RefusesBadEntries) {
               "DIR/scenes/m/x.yaml:3:11: source is a.ply; allowed: a map");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, generator: sdf_model}]\n"),
               "DIR/scenes/m/x.yaml:3:11: source: 'file' and 'generator' exclude each other");
-    EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: /a.ply}]\n"),
-              "DIR/scenes/m/x.yaml:3:18: file is '/a.ply', but must be a path within the assets "
-              "folder");
+    EXPECT_EQ(
+        f.errorOf("scene: m/x\ndoc: d\nsources: [{file: /a.ply}]\n"),
+        "DIR/scenes/m/x.yaml:3:18: file is '/a.ply', but must be a path within the assets folder");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{file: a.ply, refine_to: 0}]\n"),
               "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: at least 1");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
