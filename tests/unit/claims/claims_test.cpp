@@ -1441,7 +1441,7 @@ TEST(Claims, OfWhichNoProfileHasARowIsRefused) {
 /// Of numbers that were measured elsewhere, and that nobody laid out.
 TEST(Claims, WhatNoRowHasByAColumnOfTheFileIsRefused) {
     const auto refused = [](const std::string& claim) {
-        tables::RecordMaker maker;
+        tables::RecordMaker maker("sweep/s");
         for (const auto& [m, n, run] :
              {std::tuple("b", 1, 0), {"b", 2, 1}, {"c", 1, 2}, {"c", 2, 3}}) {
             maker.beginCase("", fmt::format(R"({{"m":"{}","n":{},"run":{}}})", m, n, run));
@@ -1449,8 +1449,6 @@ TEST(Claims, WhatNoRowHasByAColumnOfTheFileIsRefused) {
         }
         tables::Recorded records = maker.records();
         for (config::Case& one : records.cases) one.axes = one.params;
-        for (records::Record& one : records) one.table = "sweep/s";
-        for (config::Case& one : records.cases) one.experiment = "sweep/s";
         const TemporaryFolder folder;
         const auto file = folder.write(
             "s.yaml",

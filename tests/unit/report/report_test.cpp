@@ -535,15 +535,13 @@ TEST_F(Report, OfAnOwnSweepTheStepsAreFolded) {
         folder.write("s.yaml", "sweep_of: s\ntitle: Mine\ntechnique: x\nsweep: {size: [1, 2]}\n");
     ReportRun run = runIn(folder.path());
     run.experiments = {config::loadExperiment(file, {}, folder.path())};
-    tables::RecordMaker maker;
+    tables::RecordMaker maker("sweep/s");
     for (const int size : {1, 2}) {
         maker.beginCase("", fmt::format("{{\"size\": {}}}", size)).lane("timing");
         maker.add("gpu_time_ms", {0.25 * size}, "draw").add("wall_time_ms", {0.5 * size});
         maker.add("error", {1.0 * size}, "", "1");
     }
-    tables::Recorded recorded = maker.records();
-    for (records::Record& record : recorded) record.table = "sweep/s";
-    for (config::Case& item : recorded.cases) item.experiment = "sweep/s";
+    const tables::Recorded recorded = maker.records();
     judge(run, recorded);
     const std::string html = pageOf(run);
     const std::size_t folded =

@@ -33,7 +33,7 @@ config::Experiment sweepOf(const std::string& sweep) {
 
 /// Cases at these resolutions, each recorded as techniques do.
 Recorded recordedAt(std::initializer_list<int> resolutions) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const int n : resolutions) {
         maker.beginCase("", "{\"resolution\": " + std::to_string(n) + "}").lane("timing");
         maker.add("digest", {double(n)}, "", "1").add("memory_bytes", {n * 1048576.0}, "", "byte");
@@ -41,10 +41,7 @@ Recorded recordedAt(std::initializer_list<int> resolutions) {
         maker.add("gpu_time_ms", {0.25 * n}, "draw").add("wall_time_ms", {0.5 * n});
         maker.add("error_pct", {100.0 / n}, "", "%").add("baseline_memory_bytes", {5}, "", "byte");
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
-    return records;
+    return maker.records();
 }
 
 std::vector<std::string> labelsOf(const Table& table) {
@@ -68,16 +65,14 @@ TEST(DefaultLayout, ShowsAFrameMetricsThenStepsAndTellsWhatIsAlikeOnce) {
 
 /// The records of such a case have the parameter's default, which it does not use.
 TEST(DefaultLayout, AnAxisThatDoesNotApplyHasNoValue) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     double voxels = 0.0;
     for (const char* params :
          {R"({"method": "bins", "gain": 2})", R"({"method": "bins", "gain": 4})",
           R"({"method": "none", "gain": 1})"}) {
         maker.beginCase("", params).add("voxels", {++voxels}, "", "voxel");
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    const Recorded records = maker.records();
     const Table table = buildTable(
         sweepOf("{method: [bins, none], gain: [2, 4], when: {gain: {method: bins}}}"), records);
     std::vector<std::string> gains;
@@ -114,7 +109,7 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
 
 /// Frames of three methods over six processes: 10, 9 and 10 ms, of which the first wavers.
 Recorded ofMethods() {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const auto& [method, ms] :
          {std::pair("plain", 10.0), std::pair("fast", 9.0), std::pair("alike", 10.0)}) {
         maker.beginCase("", std::string(R"({"method": ")") + method + "\"}").lane("timing");
@@ -123,10 +118,7 @@ Recorded ofMethods() {
             maker.process(process).add("wall_time_ms", {ms + wavering});
         }
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
-    return records;
+    return maker.records();
 }
 
 TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
@@ -151,15 +143,13 @@ TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
 
 /// Methods with parameters of their own, each with an error that no measurement changes.
 TEST(DefaultLayout, WhatIsKnownOfMethodsIsToldAsItIs) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const auto& [method, samples, error] :
          {std::tuple("plain", 16, 4.0), {"fine", 64, 1.0}, {"alike", 32, 4.0}}) {
         maker.beginCase("", fmt::format(R"({{"method": "{}", "samples": {}}})", method, samples));
         maker.add("error_pct", {error}, "", "%");
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    const Recorded records = maker.records();
     for (const char* sweep : {"{zip: [{method: [plain, fine, alike], samples: [16, 64, 32]}]}",
                               "{list: [[{method: plain, samples: 16}, {method: fine, samples: 64}, "
                               "{method: alike, samples: 32}]]}"}) {
@@ -184,7 +174,7 @@ TEST(DefaultLayout, WhatIsKnownOfMethodsIsToldAsItIs) {
 /// What is on in some cases is held against those where it is off, unless there are methods.
 TEST(DefaultLayout, HoldsOnAgainstOff) {
     const auto timed = [](const char* axes) {
-        RecordMaker maker;
+        RecordMaker maker("sweep/s");
         for (const char* value : {"false", "true"}) {
             for (const char* method : {"plain", "fast"}) {
                 maker.beginCase("", fmt::format(fmt::runtime(axes), value, method)).lane("timing");
@@ -195,10 +185,7 @@ TEST(DefaultLayout, HoldsOnAgainstOff) {
                 if (std::string_view(axes).find("method") == std::string_view::npos) break;
             }
         }
-        Recorded records = maker.records();
-        for (records::Record& record : records) record.table = "sweep/s";
-        for (config::Case& item : records.cases) item.experiment = "sweep/s";
-        return records;
+        return maker.records();
     };
     const Table table =
         buildTable(sweepOf("{is_culled: [false, true]}"), timed(R"({{"is_culled": {}}})"));
@@ -213,7 +200,7 @@ TEST(DefaultLayout, HoldsOnAgainstOff) {
 
 /// The CPU time of what waits says nothing of it.
 TEST(DefaultLayout, OfAnImportTheClockComesBeforeCpuTime) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const char* method : {"plain", "fast"}) {
         maker.beginCase("", fmt::format(R"({{"method": "{}"}})", method)).lane("timing");
         for (int process = 0; process < 6; ++process) {
@@ -222,9 +209,7 @@ TEST(DefaultLayout, OfAnImportTheClockComesBeforeCpuTime) {
             maker.add("setup_time_ms", {3.0}).add("wall_time_ms", {time});
         }
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    const Recorded records = maker.records();
     config::Experiment experiment = sweepOf("{method: [plain, fast]}");
     experiment.technique = config::kImported;
     experiment.outputs = {};
@@ -236,15 +221,13 @@ TEST(DefaultLayout, OfAnImportTheClockComesBeforeCpuTime) {
 
 /// Of what was measured elsewhere no technique declares it.
 TEST(DefaultLayout, ImportedErrorsAreKnownByTheirNames) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const char* method : {"sobol", "jittered"}) {
         maker.beginCase("", fmt::format(R"({{"method": "{}"}})", method));
         const double less = method[0] == 's' ? 1.0 : 0.5;
         maker.add("mse", {0.4 * less}, "", "1").add("shots", {3.0 * less}, "", "1");
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
+    const Recorded records = maker.records();
     config::Experiment experiment = sweepOf("{method: [sobol, jittered]}");
     experiment.outputs = {};
     const Table table = buildTable(experiment, records);
@@ -257,7 +240,7 @@ TEST(DefaultLayout, ImportedErrorsAreKnownByTheirNames) {
 using TimeAt = std::function<double(int method, int size, int process)>;
 Recorded atSizes(int sizes, const TimeAt& wall, const TimeAt& cpu = {},
                  const char* metric = "wall_time_ms") {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (int method = 0; method < 2; ++method) {
         for (int size = 1; size <= sizes; ++size) {
             maker.beginCase("", fmt::format(R"({{"method": "{}", "size": {}}})",
@@ -270,10 +253,7 @@ Recorded atSizes(int sizes, const TimeAt& wall, const TimeAt& cpu = {},
             }
         }
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
-    return records;
+    return maker.records();
 }
 
 /// Of twenty rows of two equal methods nearly every other table has one whose six rounds are all of
@@ -357,7 +337,7 @@ config::Experiment programWith(const std::string& images) {
 }
 
 Recorded recordedOfPictures(std::initializer_list<const char*> pictures) {
-    RecordMaker maker;
+    RecordMaker maker("sweep/s");
     for (const int samples : {4, 16}) {
         maker.beginCase("", "{\"samples\": " + std::to_string(samples) + "}").lane("timing");
         maker.add("wall_time_ms", {100.0 + samples}).add("render_ms", {2.0 * samples});
@@ -368,10 +348,7 @@ Recorded recordedOfPictures(std::initializer_list<const char*> pictures) {
             }
         }
     }
-    Recorded records = maker.records();
-    for (records::Record& record : records) record.table = "sweep/s";
-    for (config::Case& item : records.cases) item.experiment = "sweep/s";
-    return records;
+    return maker.records();
 }
 
 TEST(DefaultLayout, ErrorsOfTheOnlyPictureNeedNotSayOfWhich) {

@@ -103,7 +103,7 @@ std::vector<Table> buildTables(const std::vector<config::Experiment>& experiment
 RecordMaker& RecordMaker::beginCase(const std::string& scene, const std::string& params) {
     current_ = records::Record{};
     current_.caseId = "case:" + scene + params;
-    current_.table = "zju2005/9.9";
+    current_.table = table_;
     current_.technique = "voxelization";
     const auto json = nlohmann::ordered_json::parse(params);
     if (json.contains("method")) current_.method = json["method"].get<std::string>();

@@ -39,9 +39,10 @@ Table buildTable(const config::Experiment& experiment, const Recorded& records);
 std::vector<Table> buildTables(const std::vector<config::Experiment>& experiments,
                                const Recorded& records);
 
-/// Makes records of "zju2005/9.9"; a case is known by its scene and params.
+/// Makes records of a table; a case is known by its scene and params.
 class RecordMaker {
   public:
+    explicit RecordMaker(std::string table = "zju2005/9.9") : table_(std::move(table)) {}
     /// `params` is JSON. What follows is recorded for this case.
     RecordMaker& beginCase(const std::string& scene, const std::string& params = "{}");
     RecordMaker& process(int process);
@@ -59,6 +60,7 @@ class RecordMaker {
     const Recorded& records() const { return records_; }
 
   private:
+    std::string table_;
     records::Record current_;
     Recorded records_;
 };
