@@ -2,13 +2,17 @@
 // what was measured stays, and the command that is given again ends as one that nothing befell. A
 // few calls of each command; GFXREPRO_TEST_FAILURES: all of them.
 #include <signal.h>
-
+#include <unistd.h>
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdlib>
 #include <functional>
+#include <random>
+#include <thread>
 
 #include "engine/core/files.h"
+#include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
 
 namespace gfxrepro::test {
@@ -179,6 +183,221 @@ TEST_F(FailingCalls, OfFoldersAreSaidWithTheFolder) {
         }
         EXPECT_GT(said, 3) << command[0];
     }
+}
+
+// Folders that cannot be written to, and disks that are full.
+
+/// The mock in a shell, where no file can grow beyond `blocks` of 512 bytes: what a full disk looks
+/// like to a program that outlives the signal.
+ProcessResult mockWithFullDisk(const std::string& arguments, int blocks) {
+    return runProgram({"/bin/sh", "-c",
+                       "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec " +
+                           GFXREPRO_MOCK_PROGRAM + " " + arguments});
+}
+
+using Disk = test::RunTest;
+
+TEST_F(Disk, ALimitOnFilesIsAWriteThatFails) {
+    const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
+    const ProcessResult run =
+        endedWith(2, runProgram({"/bin/sh", "-c",
+                                 std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM +
+                                     " run " + config + " --device software --out " + dir}));
+    EXPECT_THAT(run.err, HasSubstr("gfxrepro: cannot write " + dir));
+    EXPECT_THAT(run.err, HasSubstr(": File too large\n"));
+}
+
+TEST_F(Disk, AFullDiskLosesNothingMeasured) {
+    const std::string config = writeMockConfig(
+        folder,
+        "sweep:\n  number: {range: [1, 40]}\nmeasure: {lane: quality, repeats: 9}\n"
+        "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n");
+    const std::string whole = folder.path() / "whole", full = folder.path() / "full";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
+    // The plan fits, the records of 40 cases do not.
+    const auto planBlocks = static_cast<int>(fs::file_size(whole + "/plan.json") / 512 + 1);
+    const auto recordBlocks = static_cast<int>(fs::file_size(whole + "/records.csv") / 512);
+    ASSERT_LT(planBlocks, recordBlocks) << "the test needs records larger than the plan";
+    const ProcessResult run = endedWith(
+        2, mockWithFullDisk("run " + config + " --device software --out " + full, planBlocks));
+    EXPECT_THAT(run.err,
+                EndsWith("gfxrepro: cannot write " + full + "/records.csv: File too large\n"));
+    const std::size_t measured = rowsOf(full, "number").size();
+    EXPECT_GT(measured, 0U);
+    EXPECT_LT(measured, 40U);
+    const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", full}));
+    const std::string left = std::to_string(40 - measured);
+    EXPECT_EQ(resumed.out, left + " of " + left + " finished; records: " + full + "/records.csv\n");
+    EXPECT_EQ(mockGfxrepro({"table", full}).exitCode, 0);
+    for (const char* file : {"csv", "md", "tex"}) {
+        const std::string name = std::string("/tables/sweep-mock.") + file;
+        EXPECT_EQ(readFile(full + name), readFile(whole + name));
+    }
+}
+
+/// A folder stands where the picture of the first case belongs: a write that fails once.
+TEST_F(Disk, AFailedWriteOfTheRunnerIsNoneOfTheCase) {
+    const std::string config =
+        writeMockConfig(folder, "sweep: {number: [1, 2]}\nmeasure: {lane: quality}\n");
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir, "--jobs", "1"}).exitCode, 0);
+    const fs::path picture = fs::path(dir) / records::readImages(dir).front().exr;
+    for (const fs::path& file : {picture, fs::path(dir) / "records.csv"}) fs::remove(file);
+    fs::create_directories(picture / "in-the-way");
+    for (int i = 0; i < 3; ++i) {  // nor is it taken for what the runner did not survive
+        EXPECT_THAT(
+            endedWith(2, mockGfxrepro({"run", "--resume", dir, "--jobs", "1"})).err,
+            EndsWith("gfxrepro: cannot rename to " + picture.string() + ": Is a directory\n"));
+        EXPECT_TRUE(rowsOf(dir, "number").empty());
+    }
+    fs::remove_all(picture);
+    EXPECT_EQ(endedWith(0, mockGfxrepro({"run", "--resume", dir})).out,
+              "2 of 2 finished; records: " + dir + "/records.csv\n")
+        << "none is flaky";
+}
+
+TEST_F(Disk, AnExportIsThereAsAWholeOrNotAtAll) {
+    const std::string config = writeMockConfig(folder, "sweep: {number: {range: [1, 60]}}\n");
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
+    for (const std::string tidy : {"", " --tidy"}) {
+        const fs::path out = folder.path() / ("out" + tidy.substr(0, 1)) / "artifact";
+        const std::string command = "export " + dir + tidy + " --out '" + out.string() + "'";
+        endedWith(2, mockWithFullDisk(command, 8));
+        EXPECT_TRUE(!fs::exists(out.parent_path()) || fs::is_empty(out.parent_path())) << command;
+        endedWith(0, mockWithFullDisk(command, 1 << 20));
+        EXPECT_TRUE(fs::exists(out / (tidy.empty() ? "SHA256SUMS" : "run.csv")));
+        EXPECT_EQ(std::distance(fs::directory_iterator(out.parent_path()), {}), 1);
+    }
+}
+
+TEST_F(Disk, AFolderThatCannotBeWrittenIsNamed) {
+    const std::string config = writeMockConfig(folder, "");
+    // Nobody, root either, makes folders there.
+    const ProcessResult run =
+        endedWith(2, mockGfxrepro({"run", config, "--out", "/proc/gfxrepro/run"}));
+    EXPECT_THAT(
+        run.err,
+        EndsWith(
+            "gfxrepro: cannot make the folder /proc/gfxrepro/run: No such file or directory\n"));
+    EXPECT_EQ(run.out, "");
+}
+
+TEST_F(Disk, AReadOnlyRunIsNotContinued) {
+    if (::geteuid() == 0) GTEST_SKIP() << "root writes to read-only folders";
+    const std::string config = writeMockConfig(folder, "params: {number: 3}\n");
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
+    fs::permissions(dir, fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_THAT(endedWith(2, mockGfxrepro({"table", dir})).err, HasSubstr("Permission denied"));
+    fs::permissions(dir, fs::perms::owner_all);
+    EXPECT_EQ(rowsOf(dir, "number").size(), 1U);
+}
+
+// The runner, its workers or both are killed at 25 random moments (GFXREPRO_TEST_KILLS: at as
+// many), some of them on a disk that is nearly full, some with the write of a unit cut anywhere:
+// nothing measured is lost but what was cut, nothing is left, and the tables end as those of a run
+// that nobody touched.
+
+constexpr int kMoments = 25;
+constexpr int kMomentsInFolder = 5;
+constexpr int kLatestMs = 700;  // a run that nobody kills takes a little more
+
+enum class Victim { Runner, Workers, Both };
+
+int folderCount() {
+    const char* moments = std::getenv("GFXREPRO_TEST_KILLS");
+    return (moments ? std::atoi(moments) : kMoments) / kMomentsInFolder;
+}
+
+/// Starts or continues the run in `dir` and kills something `delayMs` later. No file grows beyond
+/// `blocks` of 512 bytes, if that is not 0.
+void runAndKill(const std::string& config, const std::string& dir, int delayMs, Victim victim,
+                int blocks) {
+    std::vector<std::string> command = {GFXREPRO_MOCK_PROGRAM, "run"};
+    if (blocks > 0) {
+        command = {"/bin/sh", "-c",
+                   "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec \"$0\" \"$@\"",
+                   GFXREPRO_MOCK_PROGRAM, "run"};
+    }
+    if (fs::exists(dir + "/plan.json")) {
+        command.insert(command.end(), {"--resume", dir, "--retry"});
+    } else {
+        command.insert(command.end(), {config, "--device", "software", "--out", dir});
+    }
+    BackgroundProgram run(command);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delayMs));
+    if (victim != Victim::Runner) {
+        for (const pid_t worker : backgroundWorkers()) ::kill(worker, SIGKILL);
+    }
+    if (victim != Victim::Workers) run.signal(SIGKILL);
+    run.wait();
+}
+
+/// Files that were being written.
+std::vector<fs::path> temporaryFiles(const fs::path& dir) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(dir)) {
+        const bool isTemporary = entry.path().string().find(".tmp") != std::string::npos;
+        if (isTemporary) files.push_back(entry.path());
+    }
+    return files;
+}
+
+/// Cuts the file somewhere in its last `rows` lines, as a kernel that stops a write at a page does.
+void tear(const fs::path& file, std::size_t rows, std::mt19937& random) {
+    const std::string text = fs::exists(file) ? readFile(file) : "";
+    std::size_t begin = text.size();
+    for (std::size_t i = 0; i <= rows && begin != text.npos && begin > 0; ++i) {
+        begin = text.rfind('\n', begin - 1);
+    }
+    if (begin == text.npos || begin == 0) return;  // not that many
+    fs::resize_file(file, begin + 1 + random() % (text.size() - begin - 1));
+}
+
+std::size_t countMeasured(const std::string& dir) {
+    return fs::exists(dir + "/records.csv") ? rowsOf(dir, "number").size() : 0;
+}
+
+TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
+    const TemporaryFolder folder;
+    const std::string config = writeMockConfig(
+        folder,
+        "params: {pause_ms: 30}\nsweep:\n  number: {range: [1, 12]}\n"
+        "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: \"{median:.0f}\"}\n");
+    const std::string whole = folder.path() / "whole";
+    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
+    ASSERT_EQ(mockGfxrepro({"table", whole}).exitCode, 0);
+    std::mt19937 random(20261121);
+    const std::size_t unitRows = records::readRecords(whole + "/records.csv").size() / 12;
+    std::size_t unfinished = 0;
+    for (int i = 0; i < folderCount(); ++i) {
+        const std::string dir = folder.path() / ("killed" + std::to_string(i));
+        std::size_t measured = 0;
+        for (int moment = 0; moment < kMomentsInFolder; ++moment) {
+            const int delayMs = static_cast<int>(random() % kLatestMs);
+            const int blocks = random() % 4 == 0 ? static_cast<int>(8 + random() % 40) : 0;
+            runAndKill(config, dir, delayMs, static_cast<Victim>(random() % 3), blocks);
+            const std::size_t now = countMeasured(dir);
+            EXPECT_GE(now, measured) << dir << ", " << delayMs << " ms";
+            const bool isTorn = now < 12 && random() % 4 == 0;  // not of a run that has ended
+            if (isTorn) tear(dir + "/records.csv", unitRows, random);
+            measured = countMeasured(dir);
+            EXPECT_GE(measured + 1, now) << "one unit was cut";
+            unfinished += now < 12 ? 1 : 0;
+        }
+        // A run that was killed before its plan was frozen is begun, not continued.
+        endedWith(0, fs::exists(dir + "/plan.json")
+                         ? mockGfxrepro({"run", "--resume", dir, "--retry"})
+                         : mockGfxrepro({"run", config, "--out", dir}));
+        EXPECT_TRUE(temporaryFiles(dir).empty()) << dir;
+        EXPECT_EQ(rowsOf(dir, "number").size(), 12U) << dir;
+        EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
+        for (const char* file : {"csv", "md", "tex"}) {
+            const std::string name = std::string("/tables/sweep-mock.") + file;
+            EXPECT_EQ(readFile(dir + name), readFile(whole + name)) << dir;
+        }
+    }
+    RecordProperty("unfinished", static_cast<int>(unfinished));
+    EXPECT_GT(unfinished, 0U) << "every kill came too late to test anything";
 }
 
 }  // namespace

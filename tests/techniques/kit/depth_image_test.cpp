@@ -1,6 +1,10 @@
 // Depth images: what is stored, what is culled and discarded, what is refused.
-#include "techniques/kit/depth_image.h"
+#include <utility>
+#include <vector>
 
+#include "techniques/kit/depth_image.h"
+#include "techniques/kit/draws.h"
+#include "tests/gl/gl_fixture.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 #include "tests/techniques/kit/write_depth_image.h"
 
@@ -213,6 +217,24 @@ TEST(TriangleIdsTest, AreThirtyTwoBitsWide) {
               "a scene of 4294967296 triangles: triangle ids are 32 bits wide and number "
               "4294967295 at most");
     EXPECT_THROW(requireIdsFor(1ULL << 32), UnsupportedError);
+}
+
+struct FlushedDrawsTest : test::GlTest {
+    using Pieces = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+    static Pieces piecesOf(FlushedDraws draws) {
+        Pieces pieces;
+        draws.draw(7, 100'000, [&](std::uint32_t first, std::uint32_t count) {
+            pieces.emplace_back(first, count);
+        });
+        return pieces;
+    }
+};
+
+TEST_F(FlushedDrawsTest, AreSplitOnSoftwareDevicesAlone) {
+    const Pieces whole{{7, 100'000}}, split{{7, 65'536}, {7 + 65'536, 100'000 - 65'536}};
+    EXPECT_EQ(piecesOf(FlushedDraws(false)), whole);
+    EXPECT_EQ(piecesOf(FlushedDraws(true)), split);
+    EXPECT_EQ(piecesOf(FlushedDraws()), device.info().isSoftware ? split : whole);
 }
 
 }  // namespace

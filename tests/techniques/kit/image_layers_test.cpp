@@ -1,8 +1,10 @@
 #include "techniques/kit/image_layers.h"
 
 #include <gtest/gtest.h>
-
 #include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/image/srgb.h"
+#include "techniques/kit/displayed_errors.h"
 
 namespace gfxrepro::kit {
 namespace {
@@ -97,6 +99,33 @@ TEST(ImageLayers, CameraIsTheView) {
     EXPECT_EQ(options.camera->farM, 10.0F);
     EXPECT_EQ(options.truthOf, "image");
     EXPECT_TRUE(options.layers.channels.empty());
+}
+
+// Errors of hand-made pictures.
+
+TEST(DisplayedErrorsTest, AreMeansOfShownDifferences) {
+    image::ImageF a(2, 1, 3, 0.0F);
+    image::ImageF b(2, 1, 3, 0.0F);
+    b.at(0, 0, 0) = 1.0F;       // 255
+    b.at(0, 0, 1) = 0.214041F;  // 127.5 … shown as 128 or 127
+    b.at(1, 0, 2) = 2.0F;       // as bright as shown
+    const std::vector<std::uint8_t> first{1, 0};
+    EXPECT_EQ(channelErrors(a, b, &first).x, 255.0);
+    EXPECT_NEAR(channelErrors(a, b, &first).y, 127.5, 0.5);
+    EXPECT_EQ(channelErrors(a, b, &first).z, 0.0);
+    EXPECT_EQ(channelErrors(a, b, nullptr).x, 127.5);
+    EXPECT_EQ(channelErrors(a, b, nullptr).z, 127.5);
+    const std::vector<std::uint8_t> none{0, 0};
+    EXPECT_EQ(channelErrors(a, b, &none), glm::dvec3(0.0));
+    EXPECT_EQ(shownPsnrDb(a, a), kEqualPsnrDb);
+    EXPECT_NEAR(shownPsnrDb(a, image::ImageF(2, 1, 3, 1.0F)), 0.0, 1e-9);
+}
+
+TEST(DisplayedErrorsTest, PicturesAreDifferencesAsShown) {
+    const image::ImageF error = errorPicture(image::ImageF(1, 1, 3, 0.0F),
+                                             image::ImageF(1, 1, 3, 1.0F / 12.92F / 255.0F), 50);
+    // One level, fifty times: what is shown as 50.
+    EXPECT_EQ(image::toSrgb8(error).at(0, 0), 50);
 }
 
 }  // namespace

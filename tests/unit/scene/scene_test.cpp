@@ -2,13 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/core/random.h"
+#include "engine/scene/polygon.h"
+#include "engine/scene/scene_reference.h"
+#include "tests/support/support.h"
+
 namespace gfxrepro::scene {
 namespace {
+
+using Corners = std::vector<glm::vec3>;
 
 Mesh triangle() {
     Mesh mesh;
@@ -159,6 +165,185 @@ TEST(FramingCamera, LooksAtEmptyAndFlatBoxes) {
     Box point;
     point.add(glm::vec3(1, 2, 3));
     EXPECT_EQ(framingCamera(point, 1.0F).target, glm::vec3(1, 2, 3));
+}
+
+Node reference(const std::string& text) {
+    return Node::scalar(text, SourceLocation{"t.yaml", 5, 8});
+}
+
+TEST(SceneReference, HasParametersAndSeed) {
+    const SceneReference city =
+        SceneReference::from(reference("outdoor/city?towers=4&width_m=0.5@3"));
+    EXPECT_EQ(city.name, "outdoor/city");
+    EXPECT_EQ(city.params.toFlowText(), "{towers: 4, width_m: 0.5}");
+    EXPECT_EQ(city.seed, "3");
+    EXPECT_EQ(city.text(), "outdoor/city?towers=4&width_m=0.5@3");
+    for (const char* text : {"outdoor/city", "outdoor/city@3", "outdoor/city?density=0.5"}) {
+        EXPECT_EQ(SceneReference::from(reference(text)).text(), text);
+        EXPECT_EQ(sceneName(text), "outdoor/city") << text;
+        EXPECT_FALSE(isSceneFile(text)) << text;
+    }
+}
+
+TEST(SceneReference, IsAFileWhereTheNameHasAnExtension) {
+    for (const char* text : {"scan.glb", "dir.x/a@3.glb"}) {
+        EXPECT_TRUE(isSceneFile(text)) << text;
+        EXPECT_EQ(sceneName(text), text);
+        EXPECT_EQ(SceneReference::from(reference(text)).name, text);
+    }
+    EXPECT_TRUE(isSceneFile("scan.glb?x=1"));
+}
+
+TEST(SceneReference, TakesSeedAndParameters) {
+    EXPECT_EQ(withSeed(reference("a@5"), 7).text(), "a@7");
+    EXPECT_EQ(withSeed(reference("a?n=1"), 7).text(), "a?n=1@7");
+    const Node params = parseYaml("{n: 2, kind: tall, lit: true}", "p.yaml");
+    EXPECT_EQ(withSceneParams(reference("a@5"), params).text(), "a?n=2&kind=tall&lit=true@5");
+    EXPECT_EQ(withSceneParams(reference("a?m=1&n=1"), params).text(),
+              "a?m=1&n=2&kind=tall&lit=true");
+    EXPECT_EQ(withSeed(reference("a@5"), 7).location().line, 5);
+}
+
+TEST(SceneReference, RefusesWhatIsNoParameter) {
+    const auto errorOf = [](const std::string& text) {
+        return errorText([&] { SceneReference::from(reference(text)); });
+    };
+    EXPECT_EQ(errorOf("a?blades"),
+              "t.yaml:5:8: scene 'a?blades': 'blades' is no parameter; allowed: "
+              "SCENE?NAME=VALUE&NAME=VALUE@SEED");
+    EXPECT_EQ(errorOf("a?n=1&=2"),
+              "t.yaml:5:8: scene 'a?n=1&=2': '=2' is no parameter; allowed: "
+              "SCENE?NAME=VALUE&NAME=VALUE@SEED");
+    EXPECT_EQ(errorOf("a?n=[1, 2]"),
+              "t.yaml:5:8: scene 'a?n=[1, 2]': 'n=[1, 2]' is no parameter; allowed: "
+              "SCENE?NAME=VALUE&NAME=VALUE@SEED");
+    EXPECT_EQ(
+        errorText([] { withSceneParams(reference("a"), parseYaml("n: [1, 2]", "p.yaml")); }),
+        "p.yaml:1:4: scene parameter 'n' is [1, 2]; allowed: a number, true, false or a name");
+}
+
+/// Of all triangles together; those that overlap count twice.
+double filledArea(PolygonFiller& filler, const Corners& corners) {
+    double area = 0.0;
+    for (const glm::uvec3& t : filler.fill(corners)) {
+        const glm::dvec3 a(corners[t.x]);
+        area += 0.5 *
+                glm::length(glm::cross(glm::dvec3(corners[t.y]) - a, glm::dvec3(corners[t.z]) - a));
+    }
+    return area;
+}
+
+/// From each corner on, in both directions, and with each axis upwards.
+void expectArea(const Corners& corners, double area) {
+    for (std::size_t first = 0; first < corners.size(); ++first) {
+        for (const bool isTurned : {false, true}) {
+            for (int axis = 0; axis < 3; ++axis) {
+                Corners variant;
+                for (const glm::vec3& c : corners) {
+                    variant.push_back({c[axis], c[(axis + 1) % 3], c[(axis + 2) % 3]});
+                }
+                std::rotate(variant.begin(), variant.begin() + static_cast<long>(first),
+                            variant.end());
+                if (isTurned) std::reverse(variant.begin(), variant.end());
+                PolygonFiller filler;
+                EXPECT_NEAR(filledArea(filler, variant), area, 1e-5 * area)
+                    << first << ' ' << isTurned << ' ' << axis;
+                EXPECT_EQ(filler.fill(variant).size(), corners.size() - 2);
+                EXPECT_EQ(filler.overlappingCount(), 0U);
+            }
+        }
+    }
+}
+
+TEST(PolygonFiller, FillsConcavePolygons) {
+    expectArea({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, 3.0);
+    expectArea({{2, 0, 0}, {1, 0.5F, 0}, {0, 0, 0}, {1, 2, 0}}, 1.5);
+    // Its inner corner, and then each corner, several times.
+    expectArea({{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}, 3.0);
+    Corners often;
+    for (const glm::vec3& corner :
+         Corners{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}}) {
+        often.insert(often.end(), 3, corner);
+    }
+    expectArea(often, 3.0);
+    // Corners on a straight edge.
+    expectArea({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}}, 3.0);
+}
+
+TEST(PolygonFiller, LeavesAFanWhereItFills) {
+    PolygonFiller filler;
+    const std::vector<glm::uvec3> fan{{0, 1, 2}, {0, 2, 3}, {0, 3, 4}};
+    const Corners convex{{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {2, 2, 0}, {0, 2, 0}};
+    EXPECT_TRUE(std::ranges::equal(filler.fill(convex), fan));
+    const Corners dent{{1, 1, 0}, {0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}};  // all from (1, 1)
+    EXPECT_TRUE(std::ranges::equal(filler.fill(dent), fan));
+}
+
+/// A hole is written as two edges on each other that join it to the border.
+TEST(PolygonFiller, LeavesAHoleThatIsJoinedToTheBorder) {
+    const Corners ring{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0},
+                       {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
+    PolygonFiller filler;
+    EXPECT_NEAR(filledArea(filler, ring), 12.0, 1e-9);
+    EXPECT_EQ(filler.overlappingCount(), 0U);
+}
+
+TEST(PolygonFiller, CountsWhatCrossesItself) {
+    PolygonFiller filler;
+    filler.fill(Corners{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}});
+    EXPECT_EQ(filler.overlappingCount(), 1U);
+    filler.fill(Corners{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {2, -1, 0}, {0, 4, 0}});
+    EXPECT_EQ(filler.overlappingCount(), 2U);
+    filler.fill(Corners{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    EXPECT_EQ(filler.overlappingCount(), 2U);
+}
+
+/// Stars about the origin, with as many reflex corners as others, in any plane.
+TEST(PolygonFiller, FillsRandomPolygons) {
+    Random random(7);
+    for (int round = 0; round < 200; ++round) {
+        const int count = 4 + static_cast<int>(random.index(60));
+        const glm::vec3 u = glm::normalize(
+            glm::vec3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)});
+        const glm::vec3 v = glm::normalize(glm::cross(u, glm::vec3(0.3F, 0.5F, 0.8F)));
+        Corners corners;
+        double area = 0.0;
+        double before = 0.0, first = 0.0;
+        const double step = 2.0 * 3.14159265358979 / count;
+        for (int i = 0; i < count; ++i) {
+            const double radius{random.uniform(0.2F, 3.0F)};
+            const double angle = step * i;
+            corners.push_back(static_cast<float>(radius * std::cos(angle)) * u +
+                              static_cast<float>(radius * std::sin(angle)) * v);
+            if (i == 0) first = radius;
+            area += 0.5 * std::sin(step) * radius * before;
+            before = radius;
+        }
+        area += 0.5 * std::sin(step) * before * first;
+        PolygonFiller filler;
+        EXPECT_NEAR(filledArea(filler, corners), area, 1e-4 * area) << round;
+        EXPECT_EQ(filler.overlappingCount(), 0U) << round;
+    }
+}
+
+/// A spiral has two ears; a comb of teeth too many is a fan, and counted.
+TEST(PolygonFiller, FillsLongPolygonsUpToItsLimit) {
+    Corners spiral;
+    const auto at = [](double turns, double radius) {
+        return glm::vec3(radius * std::cos(6.2831853 * turns), radius * std::sin(6.2831853 * turns),
+                         0.0);
+    };
+    for (int i = 0; i < 2000; ++i) spiral.push_back(at(i / 100.0, 10.0 + i / 100.0));
+    for (int i = 1999; i >= 0; --i) spiral.push_back(at(i / 100.0, 9.6 + i / 100.0));
+    PolygonFiller filler;
+    filler.fill(spiral);
+    EXPECT_EQ(filler.overlappingCount(), 0U);
+
+    Corners comb{{0, -1, 0}};
+    for (int i = 0; i < 5000; ++i) comb.emplace_back(i, i % 2, 0);
+    std::reverse(comb.begin() + 1, comb.end());
+    EXPECT_EQ(filler.fill(comb).size(), comb.size() - 2);
+    EXPECT_EQ(filler.overlappingCount(), 1U);
 }
 
 }  // namespace
