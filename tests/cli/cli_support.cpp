@@ -11,12 +11,15 @@
 
 namespace gfxrepro::test {
 
-ProcessResult gfxrepro(std::vector<std::string> arguments) {
+ProcessResult gfxrepro(std::vector<std::string> arguments, const std::vector<std::string>& more) {
     arguments.insert(arguments.begin(), GFXREPRO_PROGRAM);
+    arguments.insert(arguments.end(), more.begin(), more.end());
     return runProgram(arguments);
 }
 
-ProcessResult mockGfxrepro(std::vector<std::string> arguments) {
+ProcessResult mockGfxrepro(std::vector<std::string> arguments,
+                           const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
     static constexpr std::string_view kMeasuring[] = {"run", "reproduce", "plan", "submit"};
     const auto has = [&](const char* option) {
         return std::ranges::find(arguments, option) != arguments.end();
@@ -52,6 +55,33 @@ fs::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines
             "\n" + size + (hasFrames ? ", " + lines.substr(kFrames.find('{') + 1) : "}\n" + lines) +
             // Without a layout it would be timed, which tests of other things need not.
             (lines.find("measure:") == std::string::npos ? "measure: {lane: quality}\n" : ""));
+}
+
+fs::path writeProgram(const TemporaryFolder& folder, const std::string& name,
+                      const std::string& text) {
+    const fs::path program = folder.write(name, text);
+    fs::permissions(program, fs::perms::owner_all);
+    return program;
+}
+
+void expectSameTables(const fs::path& a, const fs::path& b) {
+    for (const char* file : {"sweep-mock.csv", "sweep-mock.md", "sweep-mock.tex"}) {
+        EXPECT_EQ(readFile(a / "tables" / file), readFile(b / "tables" / file)) << a << file;
+    }
+}
+
+void loseRows(const fs::path& runDir, const std::function<bool(const records::Record&)>& isLost) {
+    std::vector<records::Record> rows = records::readRecords(runDir / "records.csv");
+    std::erase_if(rows, isLost);
+    fs::remove(runDir / "records.csv");
+    records::RecordWriter(runDir / "records.csv").append(rows);
+}
+
+void replaceIn(const fs::path& file, const std::string& from, const std::string& to) {
+    std::string text = readFile(file);
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, text.npos) << file << " has no " << from;
+    writeFileAtomic(file, text.replace(at, from.size(), to));
 }
 
 std::vector<records::Record> rowsOf(const fs::path& runDir, const std::string& metric) {

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -22,8 +23,10 @@ struct RunTest : FolderTest {
 
 /// The program, and the one with the failing technique, whose cases are measured on the software
 /// device where another is not named.
-ProcessResult gfxrepro(std::vector<std::string> arguments);
-ProcessResult mockGfxrepro(std::vector<std::string> arguments);
+ProcessResult gfxrepro(std::vector<std::string> arguments,
+                       const std::vector<std::string>& more = {});
+ProcessResult mockGfxrepro(std::vector<std::string> arguments,
+                           const std::vector<std::string>& more = {});
 
 /// A result that must have this exit code; a failure names the caller's line.
 ProcessResult endedWith(int exitCode, ProcessResult result, int line = __builtin_LINE());
@@ -34,6 +37,19 @@ std::string refusalOf(const ProcessResult& result, const TemporaryFolder& folder
 /// A config for a mock technique with these lines behind its head.
 fs::path writeMockConfig(const TemporaryFolder& folder, const std::string& lines,
                          const std::string& technique = "mock");
+
+/// A file that can be run.
+fs::path writeProgram(const TemporaryFolder& folder, const std::string& name,
+                      const std::string& text);
+
+/// The tables of the mock's sweep are the same in two runs.
+void expectSameTables(const fs::path& a, const fs::path& b);
+
+/// As if these rows had been lost.
+void loseRows(const fs::path& runDir, const std::function<bool(const records::Record&)>& isLost);
+
+/// Writes the file with `to` in the place of the first `from`.
+void replaceIn(const fs::path& file, const std::string& from, const std::string& to);
 
 /// Rows of a metric.
 std::vector<records::Record> rowsOf(const fs::path& runDir, const std::string& metric);

@@ -23,10 +23,8 @@ fs::path writeNumbers(const TemporaryFolder& folder, int count, const std::strin
 }
 
 ProcessResult measure(const fs::path& config, const std::string& dir,
-                      std::vector<std::string> more = {}) {
-    more.insert(more.begin(),
-                {"run", config.string(), "--device", "software", "--quiet", "--out", dir});
-    return mockGfxrepro(more);
+                      const std::vector<std::string>& more = {}) {
+    return mockGfxrepro({"run", config, "--device", "software", "--quiet", "--out", dir}, more);
 }
 
 /// What stands behind the name of the case `number=N` in the output of `plan`.
@@ -43,13 +41,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
         text.replace(at, what.size(), by);
     }
     return text;
-}
-
-void expectSameTables(const std::string& a, const std::string& b) {
-    for (const char* file : {"csv", "md", "tex"}) {
-        const std::string name = std::string("/tables/sweep-mock.") + file;
-        EXPECT_EQ(readFile(a + name), readFile(b + name)) << name;
-    }
 }
 
 TEST(Plan, PredictsFromEarlierRuns) {
@@ -203,23 +194,17 @@ TEST_F(Shards, TimesMeasuredElsewhereAreMeasuredAgain) {
     const std::string dir = folder.path() / "run";
     ASSERT_EQ(measure(config, dir).exitCode, 0);
     // As if the run had begun elsewhere and had lost its last case.
-    const std::string manifest = readFile(dir + "/manifest.json");
-    const std::size_t cpu = manifest.find("\"cpu\": \"") + 8;
-    std::string moved = manifest;
-    moved.insert(cpu, "Another ");
-    writeFileAtomic(dir + "/manifest.json", moved);
+    replaceIn(dir + "/manifest.json", "\"cpu\": \"", "\"cpu\": \"Another ");
     const auto rows = records::readRecords(dir + "/records.csv");
-    std::vector<records::Record> two = rows;
-    std::erase_if(two, [&](const records::Record& r) { return r.caseId == rows.back().caseId; });
-    fs::remove(dir + "/records.csv");
-    records::RecordWriter(dir + "/records.csv").append(two);
+    loseRows(dir, [&](const auto& row) { return row.caseId == rows.back().caseId; });
+    const std::size_t left = records::readRecords(dir + "/records.csv").size();
     const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", dir}));
     EXPECT_THAT(
         resumed.err,
         HasSubstr("sweep/mock: begun on another machine; its times are measured again on "));
     EXPECT_EQ(resumed.out, "3 of 3 finished; records: " + dir + "/records.csv\n");
     EXPECT_EQ(rowsOf(dir, "number").size(), 3U);
-    EXPECT_EQ(records::readRecords(dir + "/records-replaced.csv").size(), two.size());
+    EXPECT_EQ(records::readRecords(dir + "/records-replaced.csv").size(), left);
 }
 
 TEST_F(Shards, ValuesOfSeveralMachinesAreMarked) {
@@ -228,10 +213,7 @@ TEST_F(Shards, ValuesOfSeveralMachinesAreMarked) {
     ASSERT_EQ(measure(config, dir, {"--shard", "1/2"}).exitCode, 0);
     ASSERT_EQ(measure(config, other, {"--shard", "2/2"}).exitCode, 0);
     // As if the first shard had begun elsewhere and had lost its case.
-    const std::string manifest = readFile(dir + "/manifest.json");
-    std::string moved = manifest;
-    moved.insert(manifest.find("\"cpu\": \"") + 8, "Another ");
-    writeFileAtomic(dir + "/manifest.json", moved);
+    replaceIn(dir + "/manifest.json", "\"cpu\": \"", "\"cpu\": \"Another ");
     const auto hasNote = [](const std::string& run) {
         EXPECT_EQ(mockGfxrepro({"report", run}).exitCode, 0);
         for (const char* file : {"/tables/sweep-mock.md", "/report.html"}) {
@@ -269,13 +251,9 @@ TEST(Resume, WithConfigsBeginsOrGoesOn) {
     other[5] = "2/2";
     EXPECT_EQ(mockGfxrepro(other).err,
               "gfxrepro: " + dir + ": holds a run with other --shard; give another folder\n");
-    other = command;
-    other.insert(other.end(), {"--set", "pause_ms=1"});
-    EXPECT_EQ(mockGfxrepro(other).err,
+    EXPECT_EQ(mockGfxrepro(command, {"--set", "pause_ms=1"}).err,
               "gfxrepro: " + dir + ": holds a run with other --set; give another folder\n");
-    other = command;
-    other.insert(other.end(), {"--out", dir});
-    EXPECT_EQ(mockGfxrepro(other).err,
+    EXPECT_EQ(mockGfxrepro(command, {"--out", dir}).err,
               "gfxrepro: --out and --resume exclude each other: both name the folder\n");
 }
 
@@ -308,9 +286,7 @@ TEST_F(Submit, CommandsMeasureAndMerge) {
     EXPECT_EQ(done.out,
               "shard  done  failed  state\n1/2    2/3   1       complete\n"
               "2/2    2/2   0       complete\nmerge  4/5   1       complete\n");
-    std::vector<std::string> other = command;
-    other.insert(other.end(), {"--set", "pause_ms=1"});
-    EXPECT_EQ(replaced(mockGfxrepro(other).err, out, "OUT"),
+    EXPECT_EQ(replaced(mockGfxrepro(command, {"--set", "pause_ms=1"}).err, out, "OUT"),
               "5 cases in 2 shards of 2 to 3 units; no earlier run tells their time\n"
               "gfxrepro: OUT: holds another submission; give another folder\n");
 }
@@ -531,10 +507,8 @@ TEST_F(Submit, TheStatusOfWhatEndedNeedsNoWholePlan) {
               "shard  done  failed  state\n1/2    2/2   0       complete\n"
               "2/2    2/2   0       complete\nmerge  4/4   0       complete\n");
     const std::string records = out + "/shards/2/records.csv";
-    std::vector<records::Record> rows = records::readRecords(records);
-    std::erase_if(rows, [&](const auto& row) { return row.caseId == rows.front().caseId; });
-    fs::remove(records);
-    records::RecordWriter(records).append(rows);
+    const std::string first = records::readRecords(records).front().caseId;
+    loseRows(out + "/shards/2", [&](const auto& row) { return row.caseId == first; });
     EXPECT_THAT(mockGfxrepro({"submit", "--status", out}).out,
                 HasSubstr("2/2    1/2   0       not complete\n"));
     // A run that lost its manifest is none that waits for its task.
@@ -666,8 +640,7 @@ TEST_F(Submit, DryRunWritesNothing) {
 std::string fakeSlurm(const TemporaryFolder& folder, const std::string& sbatch,
                       const std::string& squeue) {
     for (const auto& [name, script] : {std::pair{"sbatch", sbatch}, std::pair{"squeue", squeue}}) {
-        const fs::path file = folder.write(std::string("bin/") + name, "#!/bin/sh\n" + script);
-        fs::permissions(file, fs::perms::owner_all);
+        writeProgram(folder, std::string("bin/") + name, "#!/bin/sh\n" + script);
     }
     return "PATH=" + (folder.path() / "bin").string() + ":/usr/bin:/bin";
 }

@@ -13,11 +13,10 @@ struct Compare : ::testing::Test {
     /// The mock program, slower by `extraMs` in each iteration, whose picture is of this shade.
     std::string program(const std::string& name, int extraMs,
                         const std::string& shade = "0.5") const {
-        const fs::path path =
-            folder.write(name, "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
-                                   " GFXREPRO_MOCK_SHADE=" + shade + " exec " +
-                                   GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
-        fs::permissions(path, fs::perms::owner_all);
+        const fs::path path = writeProgram(
+            folder, name,
+            "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraMs) +
+                " GFXREPRO_MOCK_SHADE=" + shade + " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"\n");
         return path;
     }
     ProcessResult byTurns(int extraMs) const {
@@ -76,9 +75,9 @@ TEST_F(Compare, RunsOfOneProcessCannotTellTimes) {
 
 TEST_F(Compare, ABuildThatCrashesIsAnAlarm) {
     const fs::path config = writeMockConfig(folder, "measure: {lane: quality}\n");
-    const fs::path crashing = folder.write(
-        "crashing", "#!/bin/sh\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\" --set behaviour=crash\n");
-    fs::permissions(crashing, fs::perms::owner_all);
+    const fs::path crashing =
+        writeProgram(folder, "crashing",
+                     "#!/bin/sh\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\" --set behaviour=crash\n");
     const ProcessResult lost = endedWith(1, compared(program("old", 0), crashing, config));
     EXPECT_THAT(lost.out, HasSubstr(": lost: crash: "));
     EXPECT_THAT(readFile(out + "/junit.xml"), HasSubstr("<failure message=\"lost: crash: "));
@@ -96,10 +95,9 @@ TEST_F(Compare, ATableThatABuildLeavesOutIsAnErrorWithAName) {
                                          "sweep_of: two\ntitle: T\ntechnique: mock\n"
                                          "measure: {lane: quality}\n");
     const fs::path program =
-        folder.write("fewer",
+        writeProgram(folder, "fewer",
                      "#!/bin/sh\nfor a; do shift; case $a in */two.yaml) ;; *) set -- \"$@\" "
                      "\"$a\";; esac; done\nexec " GFXREPRO_MOCK_PROGRAM " \"$@\"\n");
-    fs::permissions(program, fs::perms::owner_all);
     EXPECT_THAT(endedWith(2, mockGfxrepro({"compare", "--binaries", "--rounds", "2", "--device",
                                            "software", "--out", folder.path() / "turns",
                                            GFXREPRO_MOCK_PROGRAM, program, one, two}))

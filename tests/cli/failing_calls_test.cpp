@@ -88,10 +88,7 @@ struct FailingCalls : testing::Test {
             EXPECT_EQ(row.status, records::Status::Ok) << row.message;
         }
         endedWith(0, mockGfxrepro({"table", dir}));
-        for (const char* file : {"csv", "md", "tex"}) {
-            const std::string name = std::string("tables/sweep-mock.") + file;
-            EXPECT_EQ(readFile(dir / name), readFile(fs::path(whole_) / name));
-        }
+        expectSameTables(dir, fs::path(whole_));
     }
 
     TemporaryFolder folder_;
@@ -230,10 +227,7 @@ TEST_F(Disk, AFullDiskLosesNothingMeasured) {
     const std::string left = std::to_string(40 - measured);
     EXPECT_EQ(resumed.out, left + " of " + left + " finished; records: " + full + "/records.csv\n");
     EXPECT_EQ(mockGfxrepro({"table", full}).exitCode, 0);
-    for (const char* file : {"csv", "md", "tex"}) {
-        const std::string name = std::string("/tables/sweep-mock.") + file;
-        EXPECT_EQ(readFile(full + name), readFile(whole + name));
-    }
+    expectSameTables(full, whole);
 }
 
 /// A folder stands where the picture of the first case belongs: a write that fails once.
@@ -391,10 +385,7 @@ TEST(Kill, AnyProcessAtAnyMomentLosesNothing) {
         EXPECT_TRUE(temporaryFiles(dir).empty()) << dir;
         EXPECT_EQ(rowsOf(dir, "number").size(), 12U) << dir;
         EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
-        for (const char* file : {"csv", "md", "tex"}) {
-            const std::string name = std::string("/tables/sweep-mock.") + file;
-            EXPECT_EQ(readFile(dir + name), readFile(whole + name)) << dir;
-        }
+        expectSameTables(dir, whole);
     }
     RecordProperty("unfinished", static_cast<int>(unfinished));
     EXPECT_GT(unfinished, 0U) << "every kill came too late to test anything";

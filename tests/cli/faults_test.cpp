@@ -103,11 +103,7 @@ TEST_F(Faults, MeasurementsAreCountedAsCasesAre) {
     // In a plan of someone else it would be as much memory.
     writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
-    std::string plan = readFile(dir + "/plan.json");
-    const std::string one = "\"processes\":1,";
-    ASSERT_THAT(plan, HasSubstr(one));
-    writeFileAtomic(dir + "/plan.json",
-                    plan.replace(plan.find(one), one.size(), "\"processes\":2147483647,"));
+    replaceIn(dir + "/plan.json", "\"processes\":1,", "\"processes\":2147483647,");
     for (const char* command : {"table", "report", "export"}) {
         EXPECT_EQ(mockGfxrepro({command, dir}).err,
                   "gfxrepro: " + dir +
@@ -146,9 +142,7 @@ TEST_F(Faults, CheckTellsOfAPlanThatIsTooLarge) {
             .string();
     };
     const auto said = [&](const std::vector<std::string>& files) {
-        std::vector<std::string> arguments = {"check"};
-        arguments.insert(arguments.end(), files.begin(), files.end());
-        const ProcessResult result = endedWith(0, mockGfxrepro(arguments));
+        const ProcessResult result = endedWith(0, mockGfxrepro({"check"}, files));
         return result.out;
     };
     std::string passes = "  passes: {";
@@ -317,12 +311,8 @@ TEST_F(Faults, TimesAreMeasuredInRounds) {
     // What was decided stays; a unit that is lost is measured again.
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "0 of 0 finished; records: " + dir + "/records.csv\n");
-    std::vector<records::Record> rows = records::readRecords(dir + "/records.csv");
-    const std::string last = rows.back().caseId;
-    std::erase_if(
-        rows, [&](const records::Record& row) { return row.process == 19 && row.caseId == last; });
-    fs::remove(dir + "/records.csv");
-    records::RecordWriter(dir + "/records.csv").append(rows);
+    const std::string last = records::readRecords(dir + "/records.csv").back().caseId;
+    loseRows(dir, [&](const auto& row) { return row.process == 19 && row.caseId == last; });
     EXPECT_EQ(mockGfxrepro({"run", "--resume", dir}).out,
               "1 of 1 finished; records: " + dir + "/records.csv\n");
 }

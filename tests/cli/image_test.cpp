@@ -52,8 +52,9 @@ struct ImageCommands : ::testing::Test {
         image::writePng(folder_.path() / name, image);
         return at(name);
     }
-    std::string out(const std::vector<std::string>& arguments) const {
-        const ProcessResult result = gfxrepro(arguments);
+    std::string out(const std::vector<std::string>& arguments,
+                    const std::vector<std::string>& more = {}) const {
+        const ProcessResult result = gfxrepro(arguments, more);
         EXPECT_EQ(result.exitCode, 0) << result.err;
         EXPECT_EQ(withoutLayers(result.err), "");
         return result.out;
@@ -67,14 +68,9 @@ struct ImageCommands : ::testing::Test {
         return saidWith(2, arguments);
     }
     std::string saidWith(int exitCode, const std::vector<std::string>& arguments) const {
-        ProcessResult result = gfxrepro(arguments);
-        EXPECT_EQ(result.exitCode, exitCode);
+        const ProcessResult result = endedWith(exitCode, gfxrepro(arguments));
         if (exitCode != 0) EXPECT_EQ(result.out, "");
-        const std::string prefix = folder_.path().string();
-        for (std::size_t found; (found = result.err.find(prefix)) != std::string::npos;) {
-            result.err.replace(found, prefix.size(), "DIR");
-        }
-        return result.err;
+        return errorText([&] { throw Error(result.err); }, folder_.path());
     }
     /// A text without the lines that gbuffer() has other channels than colours.
     static std::string withoutLayers(const std::string& text) {
@@ -133,10 +129,9 @@ TEST_F(ImageCommands, DiffPrintsTheMetrics) {
 TEST_F(ImageCommands, DiffTakesHdrFlipAboveOne) {
     const ExrImage a = gbuffer(6.0F), b = gbuffer(2.0F);
     const std::string first = write("a.exr", a), second = write("b.exr", b);
-    const auto valueOf = [&](std::vector<std::string> more, const char* name) {
-        std::vector<std::string> arguments{"image", "diff", first, second, "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return nlohmann::json::parse(out(arguments)).at(name).get<double>();
+    const auto valueOf = [&](const std::vector<std::string>& more, const char* name) {
+        const std::string json = out({"image", "diff", first, second, "--json"}, more);
+        return nlohmann::json::parse(json).at(name).get<double>();
     };
     EXPECT_DOUBLE_EQ(valueOf({}, "hdr_flip"), metrics::hdrFlip(a.colour(), b.colour()));
     EXPECT_DOUBLE_EQ(valueOf({"--flip", "ldr"}, "flip"), metrics::flip(a.colour(), b.colour()));

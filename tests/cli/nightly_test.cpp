@@ -24,12 +24,11 @@ struct Nightly : ::testing::Test {
     std::string bundle(int extraUs) const {
         const std::string name = "bundle-" + std::to_string(extraUs);
         fs::create_directories(folder.path() / name);
-        const fs::path program = folder.write(
-            name + "/gfxrepro",
+        const fs::path program = writeProgram(
+            folder, name + "/gfxrepro",
             "#!/bin/sh\nGFXREPRO_MOCK_EXTRA_MS=" + std::to_string(extraUs) +
                 "e-3 GFXREPRO_MOCK_SHADE=" + shade + " exec " + GFXREPRO_MOCK_PROGRAM + " \"$@\"" +
                 (isCrashing ? "$([ $1 != run ] || echo ' --set behaviour=crash')\n" : "\n"));
-        fs::permissions(program, fs::perms::owner_all);
         return program.parent_path();
     }
     ProcessResult night(int extraUs, bool isFix = false, const std::string& reason = "") const {
@@ -46,8 +45,7 @@ struct Nightly : ::testing::Test {
     /// A night of a bundle whose program is this script, of two cases and those of `second`.
     ProcessResult nightOf(const std::string& script,
                           const std::vector<std::string>& options = {"--cases", "2"}) const {
-        const fs::path program = folder.write("broken/gfxrepro", "#!/bin/sh\n" + script);
-        fs::permissions(program, fs::perms::owner_all);
+        const fs::path program = writeProgram(folder, "broken/gfxrepro", "#!/bin/sh\n" + script);
         const fs::path config =
             writeMockConfig(folder, "sweep: {busy_ms: [18, 22]}\n" + measure(), kTechnique);
         std::vector<std::string> arguments = {"/usr/bin/env", "GFXREPRO_NIGHTLY=" + state,

@@ -10,13 +10,11 @@ namespace {
 struct TwoBuilds : FolderTest {
     /// A build in `place` that says how long it takes, and leaves a picture of 64 × 64 pixels.
     void build(const std::string& place, int ms, char first = 'a', char others = 'd') const {
-        fs::permissions(
-            folder.write(
-                place,
-                "#!/bin/sh\necho '{\"metric\": \"own_ms\", \"value\": " + std::to_string(ms) +
-                    ", \"unit\": \"ms\"}' >&3\n{ printf 'P5 64 64 255\\n" + first +
-                    "'; head -c 4095 /dev/zero | tr '\\0' " + others + "; } >\"$1/result.pgm\"\n"),
-            fs::perms::owner_all);
+        writeProgram(folder, place,
+                     "#!/bin/sh\necho '{\"metric\": \"own_ms\", \"value\": " + std::to_string(ms) +
+                         ", \"unit\": \"ms\"}' >&3\n{ printf 'P5 64 64 255\\n" + first +
+                         "'; head -c 4095 /dev/zero | tr '\\0' " + others +
+                         "; } >\"$1/result.pgm\"\n");
     }
     std::string config(const std::string& command, const std::string& name = "mine") const {
         return folder.write(name + ".yaml",
@@ -26,18 +24,10 @@ struct TwoBuilds : FolderTest {
     ProcessResult compared(const std::vector<std::string>& configs,
                            const std::string& newer = "new") const {
         fs::remove_all(out);
-        std::vector<std::string> arguments = {"compare",
-                                              "--programs",
-                                              "--rounds",
-                                              "2",
-                                              "--out",
-                                              out,
-                                              "--history",
-                                              folder.path() / "history.csv",
-                                              folder.path() / "old",
-                                              folder.path() / newer};
-        arguments.insert(arguments.end(), configs.begin(), configs.end());
-        return gfxrepro(arguments);
+        return gfxrepro(
+            {"compare", "--programs", "--rounds", "2", "--out", out, "--history",
+             folder.path() / "history.csv", folder.path() / "old", folder.path() / newer},
+            configs);
     }
     std::string refusal(const std::vector<std::string>& configs) const {
         return refusalOf(compared(configs), folder);
@@ -84,7 +74,7 @@ TEST_F(TwoBuilds, APictureMayDifferByWhatTwoBuildsMayDiffer) {
 
 TEST_F(TwoBuilds, ABuildThatFailsIsAnAlarm) {
     build("old/renderer", 40);
-    fs::permissions(folder.write("new/renderer", "#!/bin/sh\nexit 3\n"), fs::perms::owner_all);
+    writeProgram(folder, "new/renderer", "#!/bin/sh\nexit 3\n");
     EXPECT_THAT(endedWith(1, compared({config("renderer {out}")})).out,
                 HasSubstr("own_ms: lost: error: program 'renderer' ended with exit code 3"));
 }

@@ -154,8 +154,7 @@ TEST_F(PicturesOfPrograms, LayersThatAreLeftOutAreSaidInTheRunAndTheReport) {
 }
 
 TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
-    const auto script = folder.write("tracer.sh", kTracer);
-    fs::permissions(script, fs::perms::owner_all);
+    const auto script = writeProgram(folder, "tracer.sh", kTracer);
     const std::string config = folder.write(
         "mine.yaml",
         "sweep_of: patterns\ntitle: Two sampling patterns\n"

@@ -54,7 +54,7 @@ constexpr const char* kProgram =
 
 struct ExternalProgram : testing::Test {
     ExternalProgram() {
-        fs::permissions(folder.write("renderer.sh", kRenderer), fs::perms::owner_all);
+        writeProgram(folder, "renderer.sh", kRenderer);
         image::Image8 picture(32, 16, 3, 100);
         for (std::size_t i = 0; i < picture.values().size(); ++i) {
             picture.values()[i] = static_cast<std::uint8_t>(37 * i * i % 251);
@@ -67,10 +67,8 @@ struct ExternalProgram : testing::Test {
     std::string write(const std::string& lines) const {
         return folder.write("mine.yaml", kProgram + lines).string();
     }
-    ProcessResult run(const std::string& config, std::vector<std::string> more = {}) const {
-        std::vector<std::string> arguments = {"run", config, "--out", dir};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return gfxrepro(arguments);
+    ProcessResult run(const std::string& config, const std::vector<std::string>& more = {}) const {
+        return gfxrepro({"run", config, "--out", dir}, more);
     }
     nlohmann::json manifest() const {
         return nlohmann::json::parse(readFile(dir + "/manifest.json"));
@@ -295,12 +293,10 @@ TEST_F(ExternalProgram, OneThatLacksAFileIsNotMeasured) {
 
 TEST_F(ExternalProgram, TheTruthIsMadeOnce) {
     // Says of each run with which number it was made.
-    fs::permissions(
-        folder.write("renderer.sh",
-                     "#!/bin/sh\necho $2 >>\"$(dirname \"$0\")/runs\"\n"
-                     "cp \"$(dirname \"$0\")/picture.png\" \"$3/result.png\"\n"
-                     "echo '{\"metric\": \"number\", \"value\": 1, \"unit\": \"1\"}' >&3\n"),
-        fs::perms::owner_all);
+    writeProgram(folder, "renderer.sh",
+                 "#!/bin/sh\necho $2 >>\"$(dirname \"$0\")/runs\"\n"
+                 "cp \"$(dirname \"$0\")/picture.png\" \"$3/result.png\"\n"
+                 "echo '{\"metric\": \"number\", \"value\": 1, \"unit\": \"1\"}' >&3\n");
     const std::string config = write(
         "  images: {result: {file: result.png, truth: {given: 99}}}\n"
         "output: {width: 32, height: 16}\n"
@@ -500,10 +496,9 @@ TEST(NoDevice, IsOpenedForWhatWorksOnTheCpu) {
 }
 
 TEST_F(ExternalProgram, TakesASceneOfTheCatalogue) {
-    fs::permissions(folder.write("renderer.sh",
-                                 "#!/bin/sh\nprintf '{\"metric\": \"number\", \"value\": %s, "
-                                 "\"unit\": \"1\"}\\n' $(stat -c %s \"$1\") >&3\n"),
-                    fs::perms::owner_all);
+    writeProgram(folder, "renderer.sh",
+                 "#!/bin/sh\nprintf '{\"metric\": \"number\", \"value\": %s, "
+                 "\"unit\": \"1\"}\\n' $(stat -c %s \"$1\") >&3\n");
     const std::string config = folder.write(
         "scene.yaml",
         "sweep_of: scene\ntitle: T\ntechnique: external\n"

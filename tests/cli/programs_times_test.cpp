@@ -31,7 +31,7 @@ constexpr const char* kImages = "  images: {result: {file: result.png, truth: {n
 
 struct Timed : testing::Test {
     Timed() {
-        fs::permissions(folder.write("renderer.sh", kSleeper), fs::perms::owner_all);
+        writeProgram(folder, "renderer.sh", kSleeper);
         folder.write("own_ms", "50");
         draw(100);
     }
@@ -149,13 +149,11 @@ TEST_F(Timed, WarmUpTruthAndErrorsAreOfTheFirstProcessAlone) {
 }
 
 TEST_F(Timed, APictureThatIsAnotherInEachProcessIsRecordedInEach) {
-    fs::permissions(
-        folder.write("renderer.sh",
-                     "#!/bin/sh\nhere=$(dirname \"$0\")\n"
-                     "[ $1 = 99 ] || echo x >>\"$here/runs\"\n"
-                     "cp \"$here/grey$(wc -l <\"$here/runs\").png\" \"$2/result.png\"\n"
-                     "echo '{\"metric\": \"own_ms\", \"value\": 1, \"unit\": \"ms\"}' >&3\n"),
-        fs::perms::owner_all);
+    writeProgram(folder, "renderer.sh",
+                 "#!/bin/sh\nhere=$(dirname \"$0\")\n"
+                 "[ $1 = 99 ] || echo x >>\"$here/runs\"\n"
+                 "cp \"$here/grey$(wc -l <\"$here/runs\").png\" \"$2/result.png\"\n"
+                 "echo '{\"metric\": \"own_ms\", \"value\": 1, \"unit\": \"ms\"}' >&3\n");
     for (int i = 1; i <= 7; ++i) {
         image::Image8 picture(16, 16, 3, static_cast<std::uint8_t>(20 * i));
         picture.values()[0] = 7;
@@ -167,12 +165,10 @@ TEST_F(Timed, APictureThatIsAnotherInEachProcessIsRecordedInEach) {
 }
 
 TEST_F(Timed, WhereItDrawsRandomNumbersEachProcessHasASeedOfItsOwn) {
-    fs::permissions(
-        folder.write("renderer.sh",
-                     "#!/bin/sh\ncp \"$(dirname \"$0\")/picture.png\" \"$2/result.png\"\necho "
-                     "'{\"metric\": \"own_ms\", \"value\": '$1', \"unit\": \"ms\"}' >&3\n"
-                     "[ \"$3\" != 2 ] || echo $1 >>\"$(dirname \"$0\")/truths\"\n"),
-        fs::perms::owner_all);
+    writeProgram(folder, "renderer.sh",
+                 "#!/bin/sh\ncp \"$(dirname \"$0\")/picture.png\" \"$2/result.png\"\necho "
+                 "'{\"metric\": \"own_ms\", \"value\": '$1', \"unit\": \"ms\"}' >&3\n"
+                 "[ \"$3\" != 2 ] || echo $1 >>\"$(dirname \"$0\")/truths\"\n");
     const std::string head =
         "sweep_of: mine\ntitle: Mine\ntechnique: external\n"
         "program:\n"
@@ -261,7 +257,7 @@ exit 0
 )";
 
 TEST_F(Frames, GivesAllFramesInOneRun) {
-    fs::permissions(folder.write("all.sh", kAllFrames), fs::perms::owner_all);
+    writeProgram(folder, "all.sh", kAllFrames);
     for (int i = 0; i < 8; ++i) {
         const auto grey = static_cast<std::uint8_t>(20 * i);
         image::writePng(folder.path() / ("grey" + std::to_string(i) + ".png"),
@@ -316,11 +312,9 @@ TEST_F(Frames, GivesAllFramesInOneRun) {
 
 /// A column that names no pass of what there is of passes alone.
 TEST_F(Frames, WhatIsOfPassesAloneIsToldWithThem) {
-    fs::permissions(
-        folder.write("passes.sh",
-                     "#!/bin/sh\nfor pass in left right; do echo '{\"metric\": \"number\", "
-                     "\"value\": 1, \"unit\": \"1\", \"pass\": \"'$pass'\"}' >&3; done\n"),
-        fs::perms::owner_all);
+    writeProgram(folder, "passes.sh",
+                 "#!/bin/sh\nfor pass in left right; do echo '{\"metric\": \"number\", "
+                 "\"value\": 1, \"unit\": \"1\", \"pass\": \"'$pass'\"}' >&3; done\n");
     const auto reproduced = [&](const std::string& column) {
         fs::remove_all(dir);
         const std::string config = folder.write(
@@ -341,11 +335,9 @@ TEST_F(Frames, WhatIsOfPassesAloneIsToldWithThem) {
 }
 
 TEST_F(Frames, SeedsAreOfTheCaseAndOfItsProcess) {
-    fs::permissions(
-        folder.write(
-            "seeded.sh",
-            "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": '$1', \"unit\": \"1\"}' >&3\n"),
-        fs::perms::owner_all);
+    writeProgram(
+        folder, "seeded.sh",
+        "#!/bin/sh\necho '{\"metric\": \"number\", \"value\": '$1', \"unit\": \"1\"}' >&3\n");
     const auto numbersWith = [&](const std::string& more) {
         const std::string config = folder.write(
             "seeds.yaml",

@@ -116,9 +116,7 @@ std::string printedConfig(const TemporaryFolder& folder, const std::string& more
 /// The line of parameters in the Markdown table of a run with these arguments.
 std::string parametersOf(const std::string& config, const std::string& dir,
                          const std::vector<std::string>& arguments) {
-    std::vector<std::string> all = {"run", config, "--device", "software", "--out", dir};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    EXPECT_EQ(mockGfxrepro(all).exitCode, 0);
+    EXPECT_EQ(mockGfxrepro({"run", config, "--out", dir}, arguments).exitCode, 0);
     EXPECT_EQ(mockGfxrepro({"table", dir}).exitCode, 0);
     const std::string text = readFile(dir + "/tables/demo2026-2.md");
     const std::size_t start = text.find("\n\n", text.find("Printed →")) + 2;
@@ -258,12 +256,9 @@ TEST_F(RunCommand, ResumeGoesOnWithWhatWasPlanned) {
     const std::string config =
         writeMockConfig(folder, "params: {number: 1}\nsweep: {pause_ms: [0, 1]}\n");
     ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
-    const auto rows = records::readRecords(dir + "/records.csv");
+    const std::string last = records::readRecords(dir + "/records.csv").back().caseId;
     const auto loseACase = [&] {
-        std::vector<records::Record> left = rows;
-        std::erase_if(left, [&](const auto& row) { return row.caseId == rows.back().caseId; });
-        fs::remove(dir + "/records.csv");
-        records::RecordWriter(dir + "/records.csv").append(left);
+        loseRows(dir, [&](const auto& row) { return row.caseId == last; });
     };
     const std::string goesOn = "; the run goes on with its configs as they were when it began\n";
     loseACase();

@@ -24,10 +24,7 @@ struct Seal : ::testing::Test {
     }
     /// The number becomes 4.
     void changeRecords() const {
-        std::string records = readFile(dir + "/records.csv");
-        const std::size_t at = records.find("number,1,3,ok");
-        ASSERT_NE(at, std::string::npos);
-        writeFileAtomic(dir + "/records.csv", records.replace(at, 13, "number,1,4,ok"));
+        replaceIn(dir + "/records.csv", "number,1,3,ok", "number,1,4,ok");
     }
     nlohmann::json manifest(const std::string& folderOf) const {
         return nlohmann::json::parse(readFile(folderOf + "/manifest.json"));
@@ -160,10 +157,7 @@ TEST_F(Seal, ARunThatGoesOnNamesTheKeptPicturesThatAreNotAsTheyWere) {
     for (const records::ImageEntry* image : {&kept, &images.back()}) {
         writeFileAtomic(dir + '/' + image->png, readFile(dir + '/' + image->png) + "x");
     }
-    std::vector<records::Record> rows = records::readRecords(dir + "/records.csv");
-    std::erase_if(rows, [&](const auto& row) { return row.caseId != kept.caseId; });
-    fs::remove(dir + "/records.csv");
-    records::RecordWriter(dir + "/records.csv").append(rows);
+    loseRows(dir, [&](const auto& row) { return row.caseId != kept.caseId; });
     const ProcessResult resumed = mockGfxrepro({"run", "--resume", dir});
     EXPECT_THAT(resumed.out, HasSubstr("1 of 1 finished"));
     EXPECT_THAT(resumed.err, HasSubstr("warning: pictures are not as they were recorded: " +

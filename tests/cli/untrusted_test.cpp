@@ -19,11 +19,7 @@ struct Untrusted : ::testing::Test {
         ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
     }
     void replaceInPlan(const std::string& from, const std::string& to) const {
-        std::string plan = readFile(dir + "/plan.json");
-        const std::size_t at = plan.find(from);
-        ASSERT_NE(at, std::string::npos);
-        plan.replace(at, from.size(), to);
-        writeFileAtomic(dir + "/plan.json", plan);
+        replaceIn(dir + "/plan.json", from, to);
     }
     void expectRefused(const std::vector<std::string>& command, const std::string& why) const {
         const ProcessResult result = mockGfxrepro(command);
@@ -415,9 +411,8 @@ TEST_F(Untrusted, WhatIsWrittenElsewhereLeavesTheRunAsItIs) {
 TEST_F(Untrusted, ResultsElsewhereDoNotGoOverThoseOfAnotherRun) {
     const std::string config = folder.path() / "mock.yaml", other = folder.path() / "other";
     ASSERT_EQ(mockGfxrepro({"run", config, "--out", other}).exitCode, 0);
-    const auto at = [](std::vector<std::string> command, const std::string& place) {
-        command.insert(command.end(), {"--out", place});
-        return mockGfxrepro(command);
+    const auto at = [](const std::vector<std::string>& command, const std::string& place) {
+        return mockGfxrepro(command, {"--out", place});
     };
     const std::vector<std::string> judged = {"claims", other, "--config", config};
     ASSERT_EQ(at({"table", dir}, out).exitCode, 0);
