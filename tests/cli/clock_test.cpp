@@ -8,7 +8,7 @@
 namespace gfxrepro::test {
 namespace {
 
-struct BrokenClock : testing::Test {
+struct BrokenClock : FolderTest {
     BrokenClock() {
         writeFileAtomic(folder.path() / "torus.yaml",
                         "sweep_of: torus\ntitle: A torus\ntechnique: voxelization\n"
@@ -30,8 +30,6 @@ struct BrokenClock : testing::Test {
                     more);
     }
     fs::path runOf(const std::string& clock) const { return folder.path() / clock; }
-
-    TemporaryFolder folder;
 };
 
 TEST_F(BrokenClock, OneThatGoesOtherwiseThanTheProcessorsGivesNoTimesOfTheDevice) {

@@ -9,7 +9,7 @@
 namespace gfxrepro::test {
 namespace {
 
-struct Compare : ::testing::Test {
+struct Compare : FolderTest {
     /// The mock program, slower by `extraMs` in each iteration, whose picture is of this shade.
     std::string program(const std::string& name, int extraMs,
                         const std::string& shade = "0.5") const {
@@ -44,7 +44,6 @@ struct Compare : ::testing::Test {
         return dirs;
     }
 
-    TemporaryFolder folder;
     std::string out = folder.path() / "out";
     std::string history = folder.path() / "history.csv";
 };

@@ -21,14 +21,14 @@ constexpr const char* kLines =
     "  bad: {says: what failed, bound: bad, at_most: 3, bound_from: ours}\n"
     "plots: [{x: number, y: out}]\n";
 
-struct Data : testing::Test {
+struct Data : FolderTest {
     ProcessResult run(const std::string& lines) {
-        config_ = writeMockConfig(folder_, lines);
+        config_ = writeMockConfig(folder, lines);
         return mockGfxrepro({"reproduce", config_, "--out", dir("run")});
     }
-    std::string dir(const std::string& name) const { return folder_.path() / name; }
+    std::string dir(const std::string& name) const { return folder.path() / name; }
     std::string refusal(const std::vector<std::string>& arguments) const {
-        return refusalOf(mockGfxrepro(arguments), folder_);
+        return refusalOf(mockGfxrepro(arguments), folder);
     }
     /// "grows holds", … of a run's claims.csv.
     std::vector<std::string> verdicts(const std::string& name) const {
@@ -39,7 +39,6 @@ struct Data : testing::Test {
         return lines;
     }
 
-    const TemporaryFolder folder_;
     std::string config_;
 };
 
@@ -54,13 +53,13 @@ TEST_F(Data, OfManyParametersEachIsAColumn) {
         config += '\n';
     }
     ASSERT_EQ(
-        mockGfxrepro({"run", folder_.write("wide.yaml", config), "--out", dir("run")}).exitCode, 0);
+        mockGfxrepro({"run", folder.write("wide.yaml", config), "--out", dir("run")}).exitCode, 0);
     endedWith(0, mockGfxrepro({"export", dir("run"), "--tidy"}));
     EXPECT_THAT(readFile(dir("run-tidy/cases.csv")), HasSubstr(",p2098,p2099,output.width"));
 }
 
 TEST_F(Data, AnImportedRunSaysSoEverywhere) {
-    const std::string csv = folder_.write("theirs.csv", "samples,mse\n4,0.5\n16,0.125\n64,0.03\n");
+    const std::string csv = folder.write("theirs.csv", "samples,mse\n4,0.5\n16,0.125\n64,0.03\n");
     const ProcessResult imported = mockGfxrepro(
         {"import", csv, "--metric", "mse=1", "--machine", "RTX 4090", "--out", dir("theirs")});
     for (const std::string machine : {"RTX\n4090", "RTX\x1b", "RTX \xFF"}) {
@@ -101,7 +100,7 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
         mockGfxrepro({"compare", dir("theirs"), dir("theirs"), "--out", dir("compared")}).out,
         HasSubstr(dir("theirs") + ": " + mark));
     // Nor can anyone here measure it by turns.
-    const std::string times = folder_.write("times.csv", "samples,render_ms\n4,10\n16,20\n");
+    const std::string times = folder.write("times.csv", "samples,render_ms\n4,10\n16,20\n");
     endedWith(0,
               mockGfxrepro({"import", times, "--metric", "render_ms=ms", "--out", dir("times")}));
     EXPECT_THAT(mockGfxrepro({"compare", dir("times"), dir("times"), "--out", dir("times-2")}).out,
@@ -110,13 +109,13 @@ TEST_F(Data, AnImportedRunSaysSoEverywhere) {
 
 TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
     const std::string config =
-        folder_.write("theirs.yaml",
-                      "sweep_of: theirs\ntitle: Another renderer\ntechnique: imported\n"
-                      "sweep: {samples: [4, 16, 64]}\n"
-                      "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
-                      "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: "
-                      "samples, at_least: -1.1, at_most: -0.9, bound_from: text}\n"
-                      "plots: [{x: samples, y: mse, log: [x, y]}]\n");
+        folder.write("theirs.yaml",
+                     "sweep_of: theirs\ntitle: Another renderer\ntechnique: imported\n"
+                     "sweep: {samples: [4, 16, 64]}\n"
+                     "layout: {rows: samples, columns: {mse: {metric: mse}}}\n"
+                     "claims:\n  slope: {says: error falls as 1 / samples, trend: mse, over: "
+                     "samples, at_least: -1.1, at_most: -0.9, bound_from: text}\n"
+                     "plots: [{x: samples, y: mse, log: [x, y]}]\n");
     EXPECT_EQ(mockGfxrepro({"check", config}).out,
               config + ": ok, sweep/theirs, 0 cases, 1 claim\n");
     EXPECT_THAT(
@@ -124,11 +123,11 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
         EndsWith("gfxrepro: DIR/theirs.yaml:3:12: technique 'imported': its numbers are measured "
                  "elsewhere; `gfxrepro import FILE.csv --config theirs.yaml` takes them\n"));
     const std::string csv =
-        folder_.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
+        folder.write("theirs.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.125\n64,mse,0.03\n");
     endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("theirs")}));
     EXPECT_THAT(verdicts("theirs"), Contains("slope holds"));
     const std::string flat =
-        folder_.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
+        folder.write("flat.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.5\n64,mse,0.5\n");
     EXPECT_EQ(mockGfxrepro({"import", flat, "--config", config, "--out", dir("flat")}).exitCode, 1);
     EXPECT_THAT(verdicts("flat"), Contains("slope fails"));
 }
@@ -136,10 +135,10 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
 /// Errors of two samplers that are alike, over seeds: one of them is nearer by chance.
 TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
     const std::string config =
-        folder_.write("s.yaml",
-                      "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {method: [a, b]}\n"
-                      "layout: {rows: method, columns: {e: {metric: rmse}}}\n"
-                      "claims: {nearer: {says: a is nearer to its truth, order: [a, b], of: e}}\n");
+        folder.write("s.yaml",
+                     "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {method: [a, b]}\n"
+                     "layout: {rows: method, columns: {e: {metric: rmse}}}\n"
+                     "claims: {nearer: {says: a is nearer to its truth, order: [a, b], of: e}}\n");
     const auto verdictOf = [&](const std::string& column, int count, double apart) {
         std::string text = "method,metric,value," + column + "\n";
         for (int i = 0; i < count; ++i) {
@@ -147,7 +146,7 @@ TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
                                 apart + 0.1 * ((i + 1) % 4), 10 * i);
         }
         fs::remove_all(dir("s"));
-        const std::string csv = folder_.write("s.csv", text);
+        const std::string csv = folder.write("s.csv", text);
         mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")});
         return verdicts("s");
     };
@@ -161,22 +160,22 @@ TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
 }
 
 TEST_F(Data, ASweptSeedIsAParameter) {
-    const std::string csv = folder_.write("s.csv", "seed,metric,value\n1,rmse,2\n2,rmse,3\n");
+    const std::string csv = folder.write("s.csv", "seed,metric,value\n1,rmse,2\n2,rmse,3\n");
     const std::string config =
-        folder_.write("s.yaml",
-                      "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {seed: [1, 2]}\n"
-                      "layout: {rows: seed, columns: {e: {metric: rmse}}}\n");
+        folder.write("s.yaml",
+                     "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {seed: [1, 2]}\n"
+                     "layout: {rows: seed, columns: {e: {metric: rmse}}}\n");
     EXPECT_EQ(mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")}).exitCode, 0);
     EXPECT_THAT(readFile(dir("s") + "/tables/sweep-s.csv"), HasSubstr("\n2,"));
 }
 
 TEST_F(Data, WhatCheckRefusesIsNotImported) {
-    const std::string csv = folder_.write("t.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.1\n");
+    const std::string csv = folder.write("t.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.1\n");
     const std::string head =
         "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {samples: [4, 16]}\n"
         "layout: {rows: samples, columns: {mse: {metric: mse}}}\n";
     const auto refusals = [&](const std::string& lines) {
-        const std::string config = folder_.write("t.yaml", head + lines);
+        const std::string config = folder.write("t.yaml", head + lines);
         const ProcessResult checked = mockGfxrepro({"check", config});
         const ProcessResult imported =
             mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
@@ -195,19 +194,19 @@ TEST_F(Data, WhatCheckRefusesIsNotImported) {
 
 /// Whatever asks for it: nothing of it is measured, which is no missing measurement.
 TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
-    const std::string csv = folder_.write("t.csv",
-                                          "m,metric,value,unit,pass\na,err,1,1,p\nb,err,2,1,p\n"
-                                          "a,t_ms,1,ms,p\nb,t_ms,2,ms,p\na,n,3,1,\nb,n,4,1,\n");
+    const std::string csv = folder.write("t.csv",
+                                         "m,metric,value,unit,pass\na,err,1,1,p\nb,err,2,1,p\n"
+                                         "a,t_ms,1,ms,p\nb,t_ms,2,ms,p\na,n,3,1,\nb,n,4,1,\n");
     const auto errorsOf = [&](const std::string& lines) {
         fs::remove_all(dir("t"));
-        const std::string config = folder_.write(
+        const std::string config = folder.write(
             "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n" + lines);
         const std::string imported =
             endedWith(2, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")})).err;
         for (const char* command : {"table", "claims", "report"}) {
             EXPECT_EQ(endedWith(2, mockGfxrepro({command, dir("t")})).err, imported) << command;
         }
-        const std::string page = folder_.path() / "page.html";
+        const std::string page = folder.path() / "page.html";
         EXPECT_EQ(endedWith(2, mockGfxrepro({"report", dir("t"), "--embed", "--out", page})).err,
                   imported);
         return imported;
@@ -233,24 +232,24 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
 }
 
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
-    const std::string csv = folder_.write("t.csv", "m,metric,value\na,err,1\nb,err,2\n");
+    const std::string csv = folder.write("t.csv", "m,metric,value\na,err,1\nb,err,2\n");
     const std::string head = "sweep_of: t\ntitle: T\ntechnique: imported\n";
     const std::string claim = "claims: {c: {says: so, order: [m=a, m=b], of: err}}\n";
-    const std::string config = folder_.write("t.yaml", head + "sweep: {m: [a, b]}\n" + claim);
+    const std::string config = folder.write("t.yaml", head + "sweep: {m: [a, b]}\n" + claim);
     endedWith(0, mockGfxrepro({"check", config}));
     endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")}));
     EXPECT_THAT(verdicts("t"), Contains("c holds"));
     EXPECT_THAT(
-        refusal({"check", folder_.write("u.yaml", head + claim)}),
+        refusal({"check", folder.write("u.yaml", head + claim)}),
         HasSubstr("axis of order is m; allowed: an axis of 'sweep', or of 'layout: {rows}'"));
 }
 
 /// A layout chooses of the frames that the file has.
 TEST_F(Data, AnImportHasTheFramesOfItsFile) {
     const std::string csv =
-        folder_.write("t.csv", "m,frame,metric,value\na,0,e,1\nb,0,e,2\na,1,e,9\nb,1,e,2\n");
+        folder.write("t.csv", "m,frame,metric,value\na,0,e,1\nb,0,e,2\na,1,e,9\nb,1,e,2\n");
     const auto configOf = [&](const char* frame) {
-        return folder_.write(
+        return folder.write(
             "t.yaml",
             std::string("sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\nlayout: "
                         "{rows: m, columns: {e: {metric: e, where: {frame: ") +
@@ -270,12 +269,12 @@ TEST_F(Data, AnImportHasTheFramesOfItsFile) {
 /// A claim could mean either.
 TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
     const std::string config =
-        folder_.write("t.yaml",
-                      "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a]}\n"
-                      "layout: {rows: m, columns: {e: {metric: err}}}\n");
+        folder.write("t.yaml",
+                     "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a]}\n"
+                     "layout: {rows: m, columns: {e: {metric: err}}}\n");
     for (const char* metric : {"m", "seed", "scene", "frame"}) {
         const std::string csv =
-            folder_.write("t.csv", fmt::format("m,metric,value\na,err,1\na,{},2\n", metric));
+            folder.write("t.csv", fmt::format("m,metric,value\na,err,1\na,{},2\n", metric));
         EXPECT_EQ(
             refusal({"import", csv, "--config", config, "--out", dir("t")}),
             fmt::format(
@@ -289,7 +288,7 @@ TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
 TEST_F(Data, OneValueASideOfAnImportCannotTell) {
     for (const char* value : {"1", "2"}) {
         const std::string csv =
-            folder_.write("t.csv", fmt::format("m,metric,value\na,e,{}\n", value));
+            folder.write("t.csv", fmt::format("m,metric,value\na,e,{}\n", value));
         endedWith(0, mockGfxrepro({"import", csv, "--out", dir(value)}));
     }
     EXPECT_THAT(
@@ -302,12 +301,12 @@ TEST_F(Data, WhatHasNoSeedDrawsNone) {
     const auto verdictOf = [&](const std::string& csv, const std::string& sweep,
                                const std::string& column, const std::string& claim) {
         fs::remove_all(dir("t"));
-        const std::string config = folder_.write(
-            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]" + sweep +
-                          "}\nlayout: {rows: m, columns: {c: {" + column +
-                          "}}}\nclaims: {C: {says: so, " + claim + "}}\n");
+        const std::string config =
+            folder.write("t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]" +
+                                       sweep + "}\nlayout: {rows: m, columns: {c: {" + column +
+                                       "}}}\nclaims: {C: {says: so, " + claim + "}}\n");
         const ProcessResult result = mockGfxrepro(
-            {"import", folder_.write("t.csv", csv), "--config", config, "--out", dir("t")});
+            {"import", folder.write("t.csv", csv), "--config", config, "--out", dir("t")});
         EXPECT_EQ(result.exitCode, 0) << result.err;
         return verdicts("t").back();
     };
@@ -325,15 +324,15 @@ TEST_F(Data, WhatHasNoSeedDrawsNone) {
     EXPECT_EQ(verdictOf(swept, ", seed: " + seeds + ", when: {seed: {m: b}}",
                         "metric: e, where: {seed: " + seeds + "}", "order: [a, b], of: c"),
               "C holds");
-    const std::string without = folder_.write(
+    const std::string without = folder.write(
         "u.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b], seed: " + seeds +
                       "}\nlayout: {rows: [m, seed], columns: {c: {metric: e}}}\n");
     EXPECT_THAT(
-        refusal({"import", folder_.write("u.csv", swept), "--config", without, "--out", dir("u")}),
+        refusal({"import", folder.write("u.csv", swept), "--config", without, "--out", dir("u")}),
         EndsWith(", or 'when: {seed: …}' in the sweep leaves it without\n"));
     const auto refused = [&](const std::string& row) {
-        return refusal({"import", folder_.write("u.csv", swept + row), "--config",
-                        (folder_.path() / "t.yaml").string(), "--out", dir("u")});
+        return refusal({"import", folder.write("u.csv", swept + row), "--config",
+                        (folder.path() / "t.yaml").string(), "--out", dir("u")});
     };
     EXPECT_EQ(refused("b,,e,0.1\n"),
               "gfxrepro: DIR/u.csv:9: column 'seed': is empty, and 'e' has one in line 3; allowed: "
@@ -347,14 +346,14 @@ TEST_F(Data, WhatHasNoSeedDrawsNone) {
 /// cases or the same again.
 TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
     const std::string others =
-        folder_.write("t.csv",
-                      "method,trial,host,metric,value\na,0,,e,1\na,1,,e,5\nb,0,,e,2\nb,1,,e,7\n"
-                      "a,,x,n,3\nb,,x,n,4\n");
+        folder.write("t.csv",
+                     "method,trial,host,metric,value\na,0,,e,1\na,1,,e,5\nb,0,,e,2\nb,1,,e,7\n"
+                     "a,,x,n,3\nb,,x,n,4\n");
     const std::string trials =
-        folder_.write("u.csv", "method,trial,metric,value\na,0,e,1\na,1,e,5\nb,0,e,2\nb,1,e,7\n");
+        folder.write("u.csv", "method,trial,metric,value\na,0,e,1\na,1,e,5\nb,0,e,2\nb,1,e,7\n");
     const auto import = [&](const std::string& lines, const std::string& csv) {
         fs::remove_all(dir("t"));
-        const std::string config = folder_.write(
+        const std::string config = folder.write(
             "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]" + lines);
         return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
     };
@@ -387,9 +386,9 @@ TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
 /// Of a config whose technique is here, too.
 TEST_F(Data, APointOfASweepIsImportedOnce) {
     const std::string config = writeMockConfig(
-        folder_, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
+        folder, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
     const std::string csv =
-        folder_.write("t.csv", "number,trial,metric,value\n1,0,number,5\n1,1,number,6\n");
+        folder.write("t.csv", "number,trial,metric,value\n1,0,number,5\n1,1,number,6\n");
     EXPECT_EQ(refusal({"import", csv, "--config", config, "--out", dir("t")}),
               "gfxrepro: DIR/t.csv:3: differs from line 2 by 'trial', which the sweep of "
               "sweep/mock does not have; allowed: one case at each point of it; what repeats a "
@@ -398,13 +397,13 @@ TEST_F(Data, APointOfASweepIsImportedOnce) {
 
 /// The same of a value that no case has.
 TEST_F(Data, AWrongValueOfAnImportsWhereIsRefused) {
-    const std::string csv = folder_.write("t.csv", "m,metric,value\na,e,1\nb,e,2\n");
+    const std::string csv = folder.write("t.csv", "m,metric,value\na,e,1\nb,e,2\n");
     const auto refused = [&](const std::string& where) {
         const std::string config =
-            folder_.write("t.yaml",
-                          "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, c]}\n"
-                          "layout: {rows: m, columns: {e: {metric: e, where: " +
-                              where + "}}}\n");
+            folder.write("t.yaml",
+                         "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, c]}\n"
+                         "layout: {rows: m, columns: {e: {metric: e, where: " +
+                             where + "}}}\n");
         return refusal({"import", csv, "--config", config, "--out", dir("t")});
     };
     EXPECT_EQ(refused("{m: d}"),
@@ -416,14 +415,14 @@ TEST_F(Data, AWrongValueOfAnImportsWhereIsRefused) {
 TEST_F(Data, AColumnMayHaveAnyName) {
     for (const char* metric : {"Δ", "error (mean)", "err/px", "log2"}) {
         const std::string csv =
-            folder_.write("t.csv", fmt::format("m,metric,value\na,{0},1\nb,{0},2\n", metric));
+            folder.write("t.csv", fmt::format("m,metric,value\na,{0},1\nb,{0},2\n", metric));
         const auto import = [&](const std::string& bound) {
             fs::remove_all(dir("t"));
             const std::string config =
-                folder_.write("t.yaml",
-                              "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
-                              "claims: {c: {says: so, bound: \"" +
-                                  bound + "\", at_most: 3}}\n");
+                folder.write("t.yaml",
+                             "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
+                             "claims: {c: {says: so, bound: \"" +
+                                 bound + "\", at_most: 3}}\n");
             return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
         };
         endedWith(0, import(metric));
@@ -437,14 +436,14 @@ TEST_F(Data, AColumnMayHaveAnyName) {
 }
 
 TEST_F(Data, WhatIsMissingOfAnImportMakesItIncomplete) {
-    const std::string csv = folder_.write(
+    const std::string csv = folder.write(
         "a.csv", "n,metric,value,process,status\n1,mse,5,0,\n1,mse,6,2,\n2,,,0,crash\n");
     EXPECT_THAT(endedWith(4, mockGfxrepro({"import", csv, "--out", dir("a")})).out,
                 HasSubstr("incomplete: 1 not measured, 1 failed\n"));
 }
 
 TEST_F(Data, NothingIsMeasuredIntoAnImportedRun) {
-    const std::string csv = folder_.write("a.csv", "n,metric,value\n1,mse,5\n2,mse,6\n");
+    const std::string csv = folder.write("a.csv", "n,metric,value\n1,mse,5\n2,mse,6\n");
     ASSERT_EQ(mockGfxrepro({"import", csv, "--out", dir("a")}).exitCode, 0);
     EXPECT_EQ(refusal({"run", "--resume", dir("a"), "--device", "software"}),
               "gfxrepro: DIR/a: was imported; there is nothing to go on with\n");
@@ -455,12 +454,12 @@ TEST_F(Data, NothingIsMeasuredIntoAnImportedRun) {
 }
 
 TEST_F(Data, BadImportsAreOneErrorEach) {
-    const std::string csv = folder_.write("a.csv", "n,metric,value\n1,mse,fast\n");
+    const std::string csv = folder.write("a.csv", "n,metric,value\n1,mse,fast\n");
     EXPECT_EQ(refusal({"import", csv, "--out", dir("a")}),
               "gfxrepro: DIR/a.csv:2: column 'value': 'fast'; allowed: a number, inf, or nothing "
               "in a row whose status is not ok\n");
     EXPECT_FALSE(fs::exists(dir("a")));
-    folder_.write("b.csv", "n,metric,value\n1,mse,+1e-400\n2,mse,1e400\n");
+    folder.write("b.csv", "n,metric,value\n1,mse,+1e-400\n2,mse,1e400\n");
     EXPECT_EQ(refusal({"import", dir("b.csv"), "--out", dir("a")}),
               "gfxrepro: DIR/b.csv:3: column 'value': '1e400'; allowed: a number, inf, or nothing "
               "in a row whose status is not ok\n");
@@ -468,24 +467,24 @@ TEST_F(Data, BadImportsAreOneErrorEach) {
               "gfxrepro: --metric 'value'; allowed: COLUMN=UNIT, such as render_time_ms=ms; 1 is "
               "the unit of what has none\n");
     const std::string config = writeMockConfig(
-        folder_, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
+        folder, "layout: {rows: number, columns: {n: {metric: number}}}\nsweep: {number: [1]}\n");
     const std::string other =
-        folder_.write("b.csv", "experiment,number,metric,value\nsweep/mine,1,number,5\n");
+        folder.write("b.csv", "experiment,number,metric,value\nsweep/mine,1,number,5\n");
     EXPECT_EQ(refusal({"import", other, "--config", config, "--out", dir("a")}),
               "gfxrepro: DIR/b.csv:2: column 'experiment': 'sweep/mine'; allowed, as of the "
               "configs given: sweep/mock\n");
-    const std::string twice = folder_.write("c.csv", "n,metric,value\n1,mse,5\n1.0,mse,6\n");
+    const std::string twice = folder.write("c.csv", "n,metric,value\n1,mse,5\n1.0,mse,6\n");
     EXPECT_EQ(refusal({"import", twice, "--out", dir("a")}),
               "gfxrepro: DIR/c.csv:3: the same case as in line 2: sweep/c\n");
-    const std::string time = folder_.write("e.csv", "n,time\n1,5\n");
+    const std::string time = folder.write("e.csv", "n,time\n1,5\n");
     EXPECT_EQ(refusal({"import", time, "--metric", "time=s", "--out", dir("a")}),
               "gfxrepro: DIR/e.csv:2: 'time' has the unit 's'; a time has a name that ends in _ms "
               "and the unit ms, by which claims know it, and nothing else has\n");
-    const std::string output = folder_.write("f.csv", "output,metric,value\na,mse,5\nb,mse,6\n");
+    const std::string output = folder.write("f.csv", "output,metric,value\na,mse,5\nb,mse,6\n");
     EXPECT_EQ(
         refusal({"import", output, "--out", dir("a")}),
         "gfxrepro: DIR/f.csv:2: column 'output'; allowed of that: output.width, output.height\n");
-    const std::string size = folder_.write("d.csv", "output.width,metric,value\nwide,mse,5\n");
+    const std::string size = folder.write("d.csv", "output.width,metric,value\nwide,mse,5\n");
     EXPECT_EQ(refusal({"import", size, "--out", dir("a")}),
               "gfxrepro: DIR/d.csv:2: column 'output.width' is wide; allowed: a whole number, 1 … "
               "16384\n");
@@ -500,7 +499,7 @@ TEST_F(Data, ARunHasItsCasesAsATable) {
 
 TEST_F(Data, ColumnsThatDifferByCaseAloneAreExported) {
     const std::string csv =
-        folder_.write("a.csv", "scene,Scene,N,n,metric,value\ns,1,2,3,mse,5\ns,2,2,4,mse,6\n");
+        folder.write("a.csv", "scene,Scene,N,n,metric,value\ns,1,2,3,mse,5\ns,2,2,4,mse,6\n");
     ASSERT_EQ(mockGfxrepro({"import", csv, "--out", dir("a")}).exitCode, 0);
     endedWith(0, mockGfxrepro({"export", dir("a"), "--tidy", "--out", dir("t")}));
     EXPECT_THAT(readFile(dir("t") + "/cases.csv"), HasSubstr(",n,output.width,"));
@@ -508,7 +507,7 @@ TEST_F(Data, ColumnsThatDifferByCaseAloneAreExported) {
 
 TEST_F(Data, ExportGoesOverNothing) {
     ASSERT_EQ(run("").exitCode, 0);
-    folder_.write("there/a.txt", "mine");
+    folder.write("there/a.txt", "mine");
     EXPECT_EQ(refusal({"export", dir("run"), "--tidy", "--out", dir("there")}),
               "gfxrepro: DIR/there: is there already; give another folder\n");
 }
@@ -521,16 +520,16 @@ TEST_F(Data, AHistoryBecomesAPage) {
                ",m,t,k,,,{},,wall_time_ms,ms," + (night < 25 ? "1" : "2") + "." +
                std::to_string(night) + "\n";
     }
-    const std::string file = folder_.write("history.csv", csv);
+    const std::string file = folder.write("history.csv", csv);
     EXPECT_EQ(endedWith(0, mockGfxrepro({"history", file, "--out", dir("history.html")})).out,
               "m: 30 nights, 1 series, 1 changes\nhistory: " + dir("history.html") + "\n");
     EXPECT_THAT(readFile(dir("history.html")), HasSubstr("<td>c24</td><td>c25</td>"));
-    const std::string text = folder_.write("thesis.html", "four years");
+    const std::string text = folder.write("thesis.html", "four years");
     EXPECT_EQ(refusal({"history", file, "--out", text}),
               "gfxrepro: DIR/thesis.html: is there and is not a report; give another file\n");
     EXPECT_EQ(refusal({"history", dir("none.csv")}),
               "gfxrepro: cannot read DIR/none.csv: No such file or directory\n");
-    const std::string header = folder_.write("empty.csv", csv.substr(0, csv.find('\n') + 1));
+    const std::string header = folder.write("empty.csv", csv.substr(0, csv.find('\n') + 1));
     EXPECT_EQ(refusal({"history", header}), "gfxrepro: DIR/empty.csv: has no night\n");
 }
 

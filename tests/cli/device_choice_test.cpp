@@ -15,7 +15,7 @@ bool hasRealGpu() {
     });
 }
 
-struct DeviceChoice : testing::Test {
+struct DeviceChoice : FolderTest {
     /// One case of the mock on `device`, with the software device as a GPU that serves or not.
     ProcessResult onPretended(const std::string& device, const std::string& how = "serves",
                               const std::vector<std::string>& more = {}) {
@@ -31,7 +31,6 @@ struct DeviceChoice : testing::Test {
             readFile(folder.path() / ("run-" + std::to_string(count)) / "manifest.json"));
     }
 
-    TemporaryFolder folder;
     std::string config = writeMockConfig(folder, "");
     int count = 0;
 };

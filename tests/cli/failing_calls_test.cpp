@@ -23,10 +23,10 @@ using Arguments = std::vector<std::string>;
 constexpr int kKilled = -1;
 constexpr int kCallsTried = 4;  // of a command and a failure, spread over all
 
-struct FailingCalls : testing::Test {
+struct FailingCalls : FolderTest {
     FailingCalls() {
         config_ = writeMockConfig(
-            folder_,
+            folder,
             "sweep:\n  number: {range: [1, 4]}\n"
             "layout:\n  rows: number\n  columns:\n    n: {metric: number, format: "
             "\"{median:.0f}\"}\n"
@@ -91,10 +91,9 @@ struct FailingCalls : testing::Test {
         expectSameTables(dir, fs::path(whole_));
     }
 
-    TemporaryFolder folder_;
-    fs::path place_ = folder_.path() / "place";  // what is here may fail
-    fs::path countFile_ = folder_.path() / "calls";
-    std::string whole_ = folder_.path() / "whole";
+    fs::path place_ = folder.path() / "place";  // what is here may fail
+    fs::path countFile_ = folder.path() / "calls";
+    std::string whole_ = folder.path() / "whole";
     std::string config_;
     std::size_t tried_ = 0;
 };
@@ -112,7 +111,7 @@ TEST_F(FailingCalls, OfARunLoseNothing) {
 }
 
 TEST_F(FailingCalls, OfAResumeLoseNothing) {
-    const fs::path dir = place_ / "run", half = folder_.path() / "half";
+    const fs::path dir = place_ / "run", half = folder.path() / "half";
     const Arguments begin = {"run", config_, "--device", "software", "--jobs", "1", "--out", dir};
     constexpr long kInTheMiddle = 30;
     ASSERT_EQ(failing(begin, kInTheMiddle, kKilled).exitCode, 128 + SIGKILL);

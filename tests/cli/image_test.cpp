@@ -19,8 +19,8 @@ using image::ExrImage;
 using image::Image8;
 using image::ImageF;
 
-struct ImageCommands : ::testing::Test {
-    std::string at(const char* name) const { return (folder_.path() / name).string(); }
+struct ImageCommands : FolderTest {
+    std::string at(const char* name) const { return (folder.path() / name).string(); }
 
     /// 16 × 12, a step between two colours at column 8, with depth, normals, ids and attributes.
     ExrImage gbuffer(float bright) const {
@@ -45,11 +45,11 @@ struct ImageCommands : ::testing::Test {
         return exr;
     }
     std::string write(const char* name, const ExrImage& exr) const {
-        image::writeExr(folder_.path() / name, exr);
+        image::writeExr(folder.path() / name, exr);
         return at(name);
     }
     std::string write(const char* name, const Image8& image) const {
-        image::writePng(folder_.path() / name, image);
+        image::writePng(folder.path() / name, image);
         return at(name);
     }
     std::string out(const std::vector<std::string>& arguments,
@@ -70,7 +70,7 @@ struct ImageCommands : ::testing::Test {
     std::string saidWith(int exitCode, const std::vector<std::string>& arguments) const {
         const ProcessResult result = endedWith(exitCode, gfxrepro(arguments));
         if (exitCode != 0) EXPECT_EQ(result.out, "");
-        return errorText([&] { throw Error(result.err); }, folder_.path());
+        return errorText([&] { throw Error(result.err); }, folder.path());
     }
     /// A text without the lines that gbuffer() has other channels than colours.
     static std::string withoutLayers(const std::string& text) {
@@ -81,13 +81,11 @@ struct ImageCommands : ::testing::Test {
         return rest;
     }
     static constexpr const char* kLayers = ": left out: the channels N.X, N.Y, N.Z, Z, id";
-
-    TemporaryFolder folder_;
 };
 
 /// From the technique through the worker and the runner into the files.
 TEST_F(ImageCommands, ImagesOfARunSayWhatMadeThem) {
-    const std::string config = writeMockConfig(folder_, "params: {number: 7}\n").string();
+    const std::string config = writeMockConfig(folder, "params: {number: 7}\n").string();
     const std::string run = at("a run");
     const ProcessResult result =
         gfxrepro({"run", config, "--device", "software", "--quiet", "--out", run});
@@ -288,7 +286,7 @@ TEST_F(ImageCommands, ConvertToExrKeepsItsNumbers) {
     const float value = 100000.5F;  // more than a half holds
     std::string pfm = "Pf\n1 1\n-1.0\n";
     pfm.append(reinterpret_cast<const char*>(&value), sizeof(value));
-    out({"image", "convert", folder_.write("a.pfm", pfm), "--out", at("a.exr")});
+    out({"image", "convert", folder.write("a.pfm", pfm), "--out", at("a.exr")});
     EXPECT_EQ(image::readExr(at("a.exr")).colour().at(0, 0), value);
     ExrImage bright;
     bright.add(ImageF(1, 1, 1, 60000.0F), {"Y"});
@@ -339,8 +337,8 @@ TEST_F(ImageCommands, ContactSheetPutsImagesInOrder) {
     const std::string exr = write("e.exr", gbuffer(1.0F));
     std::string text = out({"image", "contact-sheet", "--out", at("s.png"), red, grey, exr,
                             "--columns", "2", "--width", "40"});
-    for (std::size_t found; (found = text.find(folder_.path().string())) != std::string::npos;) {
-        text.replace(found, folder_.path().string().size(), "DIR");
+    for (std::size_t found; (found = text.find(folder.path().string())) != std::string::npos;) {
+        text.replace(found, folder.path().string().size(), "DIR");
     }
     EXPECT_EQ(text,
               "row 1 column 1  DIR/r.png\nrow 1 column 2  DIR/g.png\nrow 2 column 1  DIR/e.exr\n");
@@ -376,7 +374,7 @@ TEST_F(ImageCommands, NothingIsWrittenOverWhatIsRead) {
     EXPECT_EQ(refusal({"image", "diff", a, b, "--out", a}), same);
     EXPECT_EQ(refusal({"image", "diff", b, a, "--out", a}), same);
     EXPECT_EQ(image::readPng8(a).at(0, 0), 50);
-    const std::string model = folder_.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    const std::string model = folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     EXPECT_EQ(refusal({"scene", model, "--export", model}),
               "gfxrepro: --export DIR/m.obj is the input DIR/m.obj; allowed: another file\n");
 }

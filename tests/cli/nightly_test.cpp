@@ -14,7 +14,7 @@ namespace {
 /// To open a device is most of what a short night takes.
 constexpr const char* kTechnique = "mock_on_cpu";
 
-struct Nightly : ::testing::Test {
+struct Nightly : FolderTest {
     /// What nights look for in most tests shows without times.
     std::string measure() const {
         return isTimed ? "measure: {lane: timing, processes: 1, repeats: 2}\n"
@@ -71,7 +71,6 @@ struct Nightly : ::testing::Test {
                             fs::file_time_type::clock::now() - std::chrono::hours(24 * 8));
     }
 
-    TemporaryFolder folder;
     std::string state = folder.path() / "state";
     std::string shade = "0.5";
     bool isCrashing = false;

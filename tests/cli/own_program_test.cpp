@@ -8,7 +8,7 @@ namespace gfxrepro::test {
 namespace {
 
 /// A program that draws random numbers, of which nothing runs; `images` is that of its picture.
-struct OwnProgram : ::testing::Test {
+struct OwnProgram : FolderTest {
     struct Parts {
         std::string metrics = "{rays: ray}";
         std::string truth = "{n: 4096, seed: 99}";
@@ -35,8 +35,6 @@ struct OwnProgram : ::testing::Test {
         return result.err;
     }
     std::string refusal(const std::string& lines) const { return refusal(lines, {}); }
-
-    TemporaryFolder folder;
 };
 
 TEST_F(OwnProgram, ATestOfMeansIsOfATruthOfSeveralFrames) {

@@ -11,7 +11,7 @@ namespace {
 
 using image::ImageF;
 
-struct PicturesOfPrograms : testing::Test {
+struct PicturesOfPrograms : RunTest {
     /// Runs a config whose program leaves the file `made`, of which `truth` is the truth.
     ProcessResult run(const std::string& made, const std::string& truth) const {
         const std::string ending = fs::path(made).extension();
@@ -25,9 +25,6 @@ struct PicturesOfPrograms : testing::Test {
         fs::remove_all(dir);
         return gfxrepro({"run", config, "--out", dir, "--quiet"});
     }
-
-    TemporaryFolder folder;
-    std::string dir = folder.path() / "run";
 };
 
 TEST_F(PicturesOfPrograms, APartOfThePictureIsHeldAgainstThatPartOfItsTruth) {

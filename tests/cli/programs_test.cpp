@@ -52,7 +52,7 @@ constexpr const char* kProgram =
     "  metrics: {number: \"1\"}\n"
     "  files: [picture.png]\n";
 
-struct ExternalProgram : testing::Test {
+struct ExternalProgram : FolderTest {
     ExternalProgram() {
         writeProgram(folder, "renderer.sh", kRenderer);
         image::Image8 picture(32, 16, 3, 100);
@@ -74,7 +74,6 @@ struct ExternalProgram : testing::Test {
         return nlohmann::json::parse(readFile(dir + "/manifest.json"));
     }
 
-    TemporaryFolder folder;
     std::string dir = (folder.path() / "run").string();
 };
 

@@ -29,7 +29,7 @@ constexpr const char* kSleeps =
     "  metrics: {own_ms: ms}\n";
 constexpr const char* kImages = "  images: {result: {file: result.png, truth: {number: 99}}}\n";
 
-struct Timed : testing::Test {
+struct Timed : FolderTest {
     Timed() {
         writeProgram(folder, "renderer.sh", kSleeper);
         folder.write("own_ms", "50");
@@ -49,8 +49,6 @@ struct Timed : testing::Test {
         for (const records::Record& row : rowsOf(runDir(), metric)) values.push_back(row.value);
         return values;
     }
-
-    TemporaryFolder folder;
 };
 
 TEST_F(Timed, AProgramThatWaitsIsJudgedByTheClock) {
@@ -230,13 +228,10 @@ TEST_F(Timed, RandomNumbersOfATechniqueHaveAnIntervalOverSeeds) {
 
 // Programs that give several frames in one run, and which seeds they get.
 
-struct Frames : testing::Test {
+struct Frames : RunTest {
     ProcessResult run(const std::string& config) const {
         return gfxrepro({"run", config, "--out", dir});
     }
-
-    TemporaryFolder folder;
-    std::string dir = (folder.path() / "run").string();
 };
 
 /// Draws all frames in one run, each of its own grey; the third argument says what it does wrong.

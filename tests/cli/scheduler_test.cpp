@@ -28,7 +28,7 @@ struct AtBegin : run::Observer {
     std::function<void()> act_;
 };
 
-struct SchedulerTest : ::testing::Test {
+struct SchedulerTest : RunTest {
     /// Measures what a run of the config has planned into another folder.
     run::RunOutcome measure(const std::string& config, const std::function<void()>& atBegin,
                             std::size_t mostRecords = records::kMostRecords) {
@@ -66,8 +66,6 @@ struct SchedulerTest : ::testing::Test {
         return scenes;
     }
 
-    TemporaryFolder folder;
-    std::string dir = folder.path() / "run";
     std::vector<std::string> furtherConfigs;  // measured in the same run
     bool arePaired = false;
     int jobs = 1;

@@ -8,7 +8,7 @@
 namespace gfxrepro::test {
 namespace {
 
-struct Seal : ::testing::Test {
+struct Seal : FolderTest {
     static constexpr const char* kBody =
         "sweep: {behaviour: [ok]}\nparams: {number: 3}\n"
         "layout:\n  rows: behaviour\n  columns:\n"
@@ -30,7 +30,6 @@ struct Seal : ::testing::Test {
         return nlohmann::json::parse(readFile(folderOf + "/manifest.json"));
     }
 
-    TemporaryFolder folder;
     std::string dir = folder.path() / "run";
     const std::string warning = "warning: records.csv was changed after the run (SHA-256 ";
 };

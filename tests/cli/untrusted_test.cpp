@@ -13,7 +13,7 @@
 namespace gfxrepro::test {
 namespace {
 
-struct Untrusted : ::testing::Test {
+struct Untrusted : FolderTest {
     void SetUp() override {
         const std::string config = writeMockConfig(folder, "params: {number: 1}\n");
         ASSERT_EQ(mockGfxrepro({"run", config, "--out", dir}).exitCode, 0);
@@ -27,7 +27,6 @@ struct Untrusted : ::testing::Test {
         EXPECT_THAT(result.err, HasSubstr(why));
     }
 
-    TemporaryFolder folder;
     std::string dir = folder.path() / "run";
     std::string out = folder.path() / "out";
 };

@@ -6,12 +6,11 @@ namespace gfxrepro::test {
 namespace {
 
 /// Needs no device.
-struct ShaderSourceTest : ::testing::Test {
+struct ShaderSourceTest : FolderTest {
     std::string assembleError(const std::string& file) const {
         return errorText([&] { library.assemble(file, {}); }, folder.path());
     }
 
-    TemporaryFolder folder;
     gl::ShaderLibrary library{folder.path()};
 };
 

@@ -12,7 +12,7 @@ inline constexpr const char* kTiming =
     "measure: {lane: timing, repeats: 10, processes: 3}\n"
     "profiles: {quick: {measure: {repeats: 2, processes: 1}}}\n";
 
-struct ExperimentTest : testing::Test {
+struct ExperimentTest : FolderTest {
     void SetUp() override { folder.write("presets/timing.yaml", kTiming); }
 
     Experiment load(const std::string& text, const ExperimentOptions& options = {}) const {
@@ -32,8 +32,6 @@ struct ExperimentTest : testing::Test {
             "claims:\n  C: " +
             claim);
     }
-
-    TemporaryFolder folder;
 };
 
 }  // namespace gfxrepro::config

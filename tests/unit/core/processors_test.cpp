@@ -10,14 +10,13 @@ namespace gfxrepro::test {
 namespace {
 
 /// As a process whose group below /sys/fs/cgroup is jobs/12 sees it, allowed on all processors.
-struct UsableProcessors : ::testing::Test {
+struct UsableProcessors : FolderTest {
     UsableProcessors() { folder.write("proc/self/cgroup", "0::/jobs/12\n"); }
     void limit(const std::string& group, const std::string& max) const {
         folder.write("sys/fs/cgroup/" + group + "cpu.max", max);
     }
     int count() const { return usableProcessors(folder.path()); }
 
-    TemporaryFolder folder;
     int all = usableProcessors(TemporaryFolder().path());
 };
 

@@ -137,7 +137,7 @@ TEST(ColourProfiles, AreComparedByTheirPrimariesAndCurves) {
     EXPECT_FALSE(isSrgb(profileWith({{"A2B0", "mft2"}, {"kTRC", kSrgbCurve}}))) << "a table";
 }
 
-struct ColoursOfFiles : testing::Test {
+struct ColoursOfFiles : FolderTest {
     using Chunks = std::vector<std::pair<std::string, std::string>>;
 
     /// One row of these values, with chunks before its palette.
@@ -150,7 +150,7 @@ struct ColoursOfFiles : testing::Test {
             file.insert(at, chunk);
             at += chunk.size();
         }
-        return readPicture(folder_.write("a.png", file));
+        return readPicture(folder.write("a.png", file));
     }
     static Image8 row(const std::vector<std::uint8_t>& values, int channels) {
         Image8 image(static_cast<int>(values.size()) / channels, 1, channels);
@@ -158,7 +158,6 @@ struct ColoursOfFiles : testing::Test {
         return image;
     }
 
-    TemporaryFolder folder_;
     const std::pair<std::string, std::string> gammaOf1_{"gAMA", bigWord(100000)};
     const std::pair<std::string, std::string> displayP3_{
         "cHRM", bigWords({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000})};
@@ -235,14 +234,14 @@ TEST_F(ColoursOfFiles, NumbersThatAPaletteHasNotAreSaid) {
     file.replace(29, 4, bigWord(crcOf(file.substr(12, 17))));
     const std::string colours = std::string("PLTE\xFF\0\0\0\xFF\0", 10);
     file.insert(33, bigWord(6) + colours + bigWord(crcOf(colours)));
-    const Picture picture = readPicture(folder_.write("a.png", file));
+    const Picture picture = readPicture(folder.write("a.png", file));
     EXPECT_EQ(picture.stored.at(0, 0, 0), 1.0F);
     EXPECT_EQ(picture.stored.at(2, 0, 0), 0.0F);
     EXPECT_EQ(picture.stored.at(3, 0, 1), 1.0F);
     EXPECT_EQ(picture.notes,
               Lines{"pixels of colours that its palette has not: 1; they are black"});
     file[45] = '\x7F';  // a broken one
-    EXPECT_THROW(readPicture(folder_.write("a.png", file)), Error);
+    EXPECT_THROW(readPicture(folder.write("a.png", file)), Error);
 }
 
 TEST_F(ColoursOfFiles, GreyResponseOfTiffIsSaid) {
@@ -270,7 +269,7 @@ TEST_F(ColoursOfFiles, GreyResponseOfTiffIsSaid) {
     add(291, 3, 256, curveAt);  // densities
     const std::string file = "II*" + std::string(1, '\0') + word(8, 4) + word(count, 2) +
                              directory + word(0, 4) + std::string(512, '\1') + "\x33";
-    const Picture picture = readPicture(folder_.write("a.tif", file));
+    const Picture picture = readPicture(folder.write("a.tif", file));
     EXPECT_EQ(picture.stored.at(0, 0), 0.2F);
     EXPECT_EQ(picture.notes, Lines{"left out: its grey response curve"});
 }
@@ -281,7 +280,7 @@ TEST_F(ColoursOfFiles, PngIsTurnedAsItsExifSays) {
 }
 
 TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
-    const std::string jpeg = folder_.path() / "a.jpg", tiff = folder_.path() / "a.tif";
+    const std::string jpeg = folder.path() / "a.jpg", tiff = folder.path() / "a.tif";
     const std::array<std::uint8_t, 3> pixel{10, 20, 30};
     stbi_write_jpg(jpeg.c_str(), 1, 1, 3, pixel.data(), 100);
     const auto notesOfJpeg = [&](const std::string& profile) {
@@ -290,7 +289,7 @@ TEST_F(ColoursOfFiles, ProfilesOfJpegAndTiff) {
         file.insert(2, "\xFF\xE2" +
                            bigWord(static_cast<std::uint32_t>(segment.size()) + 2).substr(2) +
                            segment);
-        return readPicture(folder_.write("b.jpg", file)).notes;
+        return readPicture(folder.write("b.jpg", file)).notes;
     };
     EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve)), Lines{});
     EXPECT_EQ(notesOfJpeg(profileOf(kSrgbCurve, kDisplayP3)),
@@ -340,21 +339,20 @@ TEST_F(ColoursOfFiles, PixelsThatAreNoSquares) {
               Lines{"left out: its pixels are 0.5 times as wide as high"});
     EXPECT_EQ(png(row({9}, 1), {{"pHYs", bigWords({2000, 4000}) + metre}}).notes, wide_);
     EXPECT_EQ(png(row({9}, 1), {{"pHYs", bigWords({2834, 2835}) + metre}}).notes, Lines{});
-    const std::string jpeg = folder_.path() / "a.jpg";
+    const std::string jpeg = folder.path() / "a.jpg";
     const std::array<std::uint8_t, 1> pixel{10};
     stbi_write_jpg(jpeg.c_str(), 1, 1, 1, pixel.data(), 100);
     std::string file = readFile(jpeg);
     ASSERT_EQ(file.substr(6, 4), "JFIF");
     EXPECT_EQ(readPicture(jpeg).notes, Lines{});
     file.replace(14, 4, std::string("\0\1\0\2", 4));
-    EXPECT_EQ(readPicture(folder_.write("b.jpg", file)).notes, wide_);
+    EXPECT_EQ(readPicture(folder.write("b.jpg", file)).notes, wide_);
 }
 
 TEST_F(ColoursOfFiles, GammaOfHdrAndTga) {
     const std::string pixel("\x80\x80\x80\x81", 4);
     const auto notesOfHdr = [&](const std::string& line) {
-        return readPicture(
-                   folder_.write("a.hdr", "#?RADIANCE\n" + line + "\n\n-Y 1 +X 1\n" + pixel))
+        return readPicture(folder.write("a.hdr", "#?RADIANCE\n" + line + "\n\n-Y 1 +X 1\n" + pixel))
             .notes;
     };
     EXPECT_EQ(notesOfHdr("VIEW= -vp 0 0 0"), Lines{});
@@ -368,8 +366,8 @@ TEST_F(ColoursOfFiles, GammaOfHdrAndTga) {
     const auto footer = [](char at) {
         return std::string(1, at) + std::string(7, '\0') + "TRUEVISION-XFILE." + '\0';
     };
-    EXPECT_EQ(readPicture(folder_.write("a.tga", tga + footer(0))).notes, Lines{});
-    EXPECT_EQ(readPicture(folder_.write("a.tga", tga + area + footer(19))).notes,
+    EXPECT_EQ(readPicture(folder.write("a.tga", tga + footer(0))).notes, Lines{});
+    EXPECT_EQ(readPicture(folder.write("a.tga", tga + area + footer(19))).notes,
               (Lines{"left out: its gamma", wide_[0]}));
 }
 

@@ -22,7 +22,7 @@
 namespace gfxrepro::image {
 namespace {
 
-struct ExrMeaning : testing::Test {
+struct ExrMeaning : FolderTest {
     /// Pixels of the columns and rows of `data`: red is their column, green their row.
     fs::path write(const char* name, const Rectangle& data, const Rectangle& display) const {
         ImageF colour(data.width, data.height, 3);
@@ -63,12 +63,10 @@ struct ExrMeaning : testing::Test {
         return path(name);
     }
 
-    fs::path path(const char* name) const { return folder_.path() / name; }
+    fs::path path(const char* name) const { return folder.path() / name; }
     std::string errorOf(const char* name) const {
-        return errorText([&] { readPicture(path(name)); }, folder_.path());
+        return errorText([&] { readPicture(path(name)); }, folder.path());
     }
-
-    TemporaryFolder folder_;
 };
 
 TEST_F(ExrMeaning, BothWindowsAreKept) {

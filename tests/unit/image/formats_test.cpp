@@ -23,7 +23,7 @@
 namespace gfxrepro::image {
 namespace {
 
-struct Formats : testing::Test {
+struct Formats : FolderTest {
     static constexpr int kWidth = 11, kHeight = 5;
 
     /// Of every pixel and channel another one.
@@ -42,9 +42,9 @@ struct Formats : testing::Test {
         }
         return result;
     }
-    std::string path(const char* name) const { return folder_.path() / name; }
+    std::string path(const char* name) const { return folder.path() / name; }
     std::string errorOf(const std::string& name, const std::string& content) const {
-        return errorText([&] { readPicture(folder_.write(name, content)); }, folder_.path());
+        return errorText([&] { readPicture(folder.write(name, content)); }, folder.path());
     }
     template <class T>
     static std::string bytesOf(const std::vector<T>& numbers) {
@@ -67,24 +67,22 @@ struct Formats : testing::Test {
             EXPECT_EQ(picture.linear.at(2, 1, 1), linearOf(picture.stored.at(2, 1, 1)));
         }
     }
-
-    TemporaryFolder folder_;
 };
 
 TEST_F(Formats, PortableAnymapsAreSrgb) {
-    folder_.write("a.ppm", "P6\n# by hand\n11 5\n255\n" + bytesOf(values(3)));
+    folder.write("a.ppm", "P6\n# by hand\n11 5\n255\n" + bytesOf(values(3)));
     expectValues("a.ppm", 3);
-    folder_.write("a.pgm", "P5 11 5 255\n" + bytesOf(values(1)));
+    folder.write("a.pgm", "P5 11 5 255\n" + bytesOf(values(1)));
     expectValues("a.pgm", 1);
     const Picture deep =
-        readPicture(folder_.write("b.ppm", std::string("P6 1 1 1000\n\x03\xe8\x01\xf4\0\0", 18)));
+        readPicture(folder.write("b.ppm", std::string("P6 1 1 1000\n\x03\xe8\x01\xf4\0\0", 18)));
     EXPECT_EQ(deep.bits, 16);
     EXPECT_EQ(deep.stored.at(0, 0, 0), 1.0F);
     EXPECT_EQ(deep.stored.at(0, 0, 1), 0.5F);
     // Lines that end in two characters, before a picture that begins with the second.
-    folder_.write("d.ppm", "P6\r\n11 5\r\n255\r\n" + bytesOf(values(3)));
+    folder.write("d.ppm", "P6\r\n11 5\r\n255\r\n" + bytesOf(values(3)));
     expectValues("d.ppm", 3);
-    const Picture one = readPicture(folder_.write("e.pgm", "P5 1 1 255\r\n"));
+    const Picture one = readPicture(folder.write("e.pgm", "P5 1 1 255\r\n"));
     EXPECT_EQ(std::lround(255.0F * one.stored.at(0, 0)), '\n');
     EXPECT_EQ(
         errorOf("c.ppm", "P6 2 1 255\nabcde"),
@@ -104,23 +102,23 @@ TEST_F(Formats, PortableAnymapsMayBeText) {
     for (const int channels : {1, 3}) {
         std::string text = channels == 1 ? "P2 #\n11 5\n255" : "P3\r\n11 5\r\n255\r\n";
         for (const std::uint8_t value : values(channels)) text += '\n' + std::to_string(value);
-        folder_.write("a.pnm", text);  // no blank behind the last
+        folder.write("a.pnm", text);  // no blank behind the last
         expectValues("a.pnm", channels);
     }
-    const Picture deep = readPicture(folder_.write("b.ppm", "P3 1 1 1000\n1000 500 # half\n0\n"));
+    const Picture deep = readPicture(folder.write("b.ppm", "P3 1 1 1000\n1000 500 # half\n0\n"));
     EXPECT_EQ(deep.bits, 16);
     EXPECT_EQ(deep.stored.at(0, 0, 1), 0.5F);
     // 1 is black; a row of bits ends with its byte.
     for (const std::string& bits : {std::string("P1\n9 2\n100000001\n0 0 0 0 0 0 0 0 1"),
                                     std::string("P4 9 2\n\x80\x80\0\x80", 11)}) {
-        const Picture mask = readPicture(folder_.write("a.pbm", bits));
+        const Picture mask = readPicture(folder.write("a.pbm", bits));
         ASSERT_EQ(mask.width, 9);
         for (int x = 0; x < 9; ++x) {
             EXPECT_EQ(mask.stored.at(x, 0), x % 8 == 0 ? 0.0F : 1.0F) << x;
             EXPECT_EQ(mask.stored.at(x, 1), x == 8 ? 0.0F : 1.0F) << x;
         }
     }
-    const Picture zeros = readPicture(folder_.write("a.pgm", "P2 01 1 0100\n050\n"));
+    const Picture zeros = readPicture(folder.write("a.pgm", "P2 01 1 0100\n050\n"));
     EXPECT_EQ(zeros.stored.at(0, 0), 0.5F);
     EXPECT_EQ(
         errorOf("c.ppm", "P3 1 1 255\n1 2"),
@@ -136,22 +134,22 @@ TEST_F(Formats, PortableAnymapsMayBeText) {
 TEST_F(Formats, PortableFloatMapsAreLinear) {
     const std::vector<float> rows = {1.5F, -2.0F, 0.25F, 4.0F, 0.0F, 1e-5F,
                                      7.0F, 8.0F,  9.0F,  1.0F, 2.0F, 3.0F};
-    const Picture picture = readPicture(folder_.write("a.pfm", "PF\n2 2\n-1.0\n" + bytesOf(rows)));
+    const Picture picture = readPicture(folder.write("a.pfm", "PF\n2 2\n-1.0\n" + bytesOf(rows)));
     EXPECT_TRUE(picture.isLinear);
     EXPECT_EQ(picture.linear.at(0, 1, 0), 1.5F);  // the last row comes first
     EXPECT_EQ(picture.stored.at(1, 0, 2), 3.0F);
     const Picture windows =
-        readPicture(folder_.write("w.pfm", "PF\r\n2 2\r\n-1.0\r\n" + bytesOf(rows)));
+        readPicture(folder.write("w.pfm", "PF\r\n2 2\r\n-1.0\r\n" + bytesOf(rows)));
     EXPECT_EQ(windows.linear, picture.linear);
     for (const char* end : {" \n", " \r\n", "  \n", "\t\n"}) {
         const Picture blanks =
-            readPicture(folder_.write("w.pfm", std::string("PF\n2 2\n-1.0") + end + bytesOf(rows)));
+            readPicture(folder.write("w.pfm", std::string("PF\n2 2\n-1.0") + end + bytesOf(rows)));
         EXPECT_EQ(blanks.linear, picture.linear) << end;
         EXPECT_TRUE(blanks.notes.empty()) << end;
     }
     std::string swapped = bytesOf(std::vector<float>{1.5F, 2.5F});
     for (std::size_t i = 0; i < swapped.size(); i += 4) std::reverse(&swapped[i], &swapped[i] + 4);
-    EXPECT_EQ(readPicture(folder_.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
+    EXPECT_EQ(readPicture(folder.write("b.pfm", "Pf\n2 1\n1\n" + swapped)).linear.at(1, 0), 2.5F);
     EXPECT_EQ(errorOf("c.pfm", "Pf\n1 1\n-2\nabcd"),
               "DIR/c.pfm: its scale is -2; 1 or -1 are allowed, as readers differ in others");
     EXPECT_EQ(
@@ -170,7 +168,7 @@ TEST_F(Formats, WhatStandsBehindAPictureIsSaid) {
          {std::string("P5 1 1 255\nz"), std::string("P2 1 1 255\n9\n"),
           std::string("Pf\n1 1\n-1\n\0\0\0\0", 14), tga + 'z', hdr, png}) {
         const auto notesOf = [&](const std::string& behind) {
-            return readPicture(folder_.write("a.tga", picture + behind)).notes;
+            return readPicture(folder.write("a.tga", picture + behind)).notes;
         };
         EXPECT_EQ(notesOf(std::string("\r\n\0\0", 4)), std::vector<std::string>{}) << picture;
         EXPECT_EQ(notesOf("\nabc"), std::vector<std::string>{"left out: 4 bytes behind its end"})
@@ -194,24 +192,24 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
     // Of fewer than 8 columns the pixels lie one behind the other; (1, 1, 1, n) repeats one.
     const std::string head = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n";
     const std::string pixels = "\n-Y 1 +X 4\n\x80\x40\x20\x81\x01\x01\x01\x02\x80\x80\x80\x80";
-    const Picture small = readPicture(folder_.write("b.hdr", head + pixels));
+    const Picture small = readPicture(folder.write("b.hdr", head + pixels));
     EXPECT_EQ(small.linear.at(2, 0, 0), 1.0F);
     EXPECT_EQ(small.linear.at(2, 0, 2), 0.25F);
     EXPECT_EQ(small.linear.at(3, 0, 1), 0.5F);
     // What the header multiplied by is divided out again.
     const Picture exposed = readPicture(
-        folder_.write("c.hdr", head + "EXPOSURE=2\nEXPOSURE= 4\nCOLORCORR=1 2 1\n" + pixels));
+        folder.write("c.hdr", head + "EXPOSURE=2\nEXPOSURE= 4\nCOLORCORR=1 2 1\n" + pixels));
     EXPECT_EQ(exposed.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(exposed.linear.at(3, 0, 1), 0.03125F);
     // Blanks stand around '=', too. An indented line is of a picture that this one was made of.
     const Picture spaced = readPicture(
-        folder_.write("c.hdr",
-                      "#?RADIANCE\nFORMAT = 32-bit_rle_rgbe\nEXPOSURE = 2.0\nEXPOSURE\t=\t4\n"
-                      "\tEXPOSURE=8\nGAMMA = 2.2\n" +
-                          pixels));
+        folder.write("c.hdr",
+                     "#?RADIANCE\nFORMAT = 32-bit_rle_rgbe\nEXPOSURE = 2.0\nEXPOSURE\t=\t4\n"
+                     "\tEXPOSURE=8\nGAMMA = 2.2\n" +
+                         pixels));
     EXPECT_EQ(spaced.linear.at(2, 0, 0), 0.125F);
     EXPECT_EQ(spaced.notes, std::vector<std::string>{"left out: GAMMA = 2.2"});
-    const Picture zeros = readPicture(folder_.write(
+    const Picture zeros = readPicture(folder.write(
         "c.hdr", head + "EXPOSURE=02\n\n-Y 01 +X 04" + pixels.substr(pixels.find("+X 4") + 4)));
     EXPECT_EQ(zeros.linear.at(3, 0, 1), 0.25F);
     EXPECT_EQ(errorOf("d.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 4\n"),
@@ -219,7 +217,7 @@ TEST_F(Formats, RadiancesPicturesAreLinear) {
     EXPECT_EQ(errorOf("d.hdr", head + "EXPOSURE=0\n" + pixels),
               "DIR/d.hdr: its header has 'EXPOSURE=0'");
     const std::string noPrimaries = head + "PRIMARIES=0 0 0 0 0 0 0 0\n" + pixels;
-    EXPECT_EQ(readPicture(folder_.write("c.hdr", noPrimaries)).linear, small.linear);
+    EXPECT_EQ(readPicture(folder.write("c.hdr", noPrimaries)).linear, small.linear);
     EXPECT_EQ(errorOf("d.hdr", head + "PRIMARIES=1 0 0 1 0 0 .33 .33\n" + pixels),
               "DIR/d.hdr: PRIMARIES=1 0 0 1 0 0 .33 .33: other primaries than those of Rec. 709");
     EXPECT_EQ(errorOf("d.hdr", head + "\n+Y 1 +X 4\n"),
@@ -267,7 +265,7 @@ TEST_F(Formats, TargasPaletteHasItsColours) {
         return head + "\x14\x28\x64\x1E\x32\x6E" + rest;  // blue, green, red: of colours 2 and 3
     };
     const auto valuesOf = [&](const std::string& file) {
-        const ImageF stored = readPicture(folder_.write("a.tga", file)).stored;
+        const ImageF stored = readPicture(folder.write("a.tga", file)).stored;
         return std::vector<float>(stored.values().begin(), stored.values().end());
     };
     const auto pixels = [](const std::vector<int>& bytes) {
@@ -297,7 +295,7 @@ TEST_F(Formats, TargasFourthByteIsSaidWhereItIsNoAlpha) {
         return head + pixels;
     };
     const auto notesOf = [&](char flags, const std::string& pixels) {
-        return readPicture(folder_.write("a.tga", fileOf(flags, pixels))).notes;
+        return readPicture(folder.write("a.tga", fileOf(flags, pixels))).notes;
     };
     const std::vector<std::string> none;
     EXPECT_EQ(
@@ -322,7 +320,7 @@ TEST_F(Formats, TargasExtensionSaysWhatItsAlphaIs) {
         std::string extension(495, '\0');
         extension.back() = static_cast<char>(kind);
         file += extension + std::string("\x16\0\0\0\0\0\0\0TRUEVISION-XFILE.\0", 26);
-        const ImageF values = readPicture(folder_.write("a.tga", file)).stored;
+        const ImageF values = readPicture(folder.write("a.tga", file)).stored;
         return std::vector<float>(values.values().begin(), values.values().end());
     };
     const auto part = [](float value) { return value / 255.0F; };
@@ -356,18 +354,18 @@ TEST_F(Formats, JpegIsSrgb) {
               }),
               cut("a", whole));
     // Phones put more pictures behind the first.
-    EXPECT_EQ(readPicture(folder_.write("b.jpg", whole + std::string(9, '\0'))).notes,
+    EXPECT_EQ(readPicture(folder.write("b.jpg", whole + std::string(9, '\0'))).notes,
               std::vector<std::string>{});
-    const Picture first = readPicture(folder_.write("b.jpg", whole + whole.substr(0, 99)));
+    const Picture first = readPicture(folder.write("b.jpg", whole + whole.substr(0, 99)));
     EXPECT_EQ(first.stored, picture.stored);
     EXPECT_EQ(first.notes, std::vector<std::string>{"left out: 99 bytes behind its end"});
     // Markers may stand behind further FF; the end of a thumbnail within a segment is none.
     std::string filled = whole;
     filled.insert(2, "\xFF\xFF\xFE\0\4\xFF\xD9", 7);
-    EXPECT_EQ(readPicture(folder_.write("b.jpg", filled)).stored, picture.stored);
+    EXPECT_EQ(readPicture(folder.write("b.jpg", filled)).stored, picture.stored);
     EXPECT_EQ(errorOf("b.jpg", filled.substr(0, filled.size() - 3)), cut("DIR/b.jpg", filled));
     // By what it is, not by its name.
-    EXPECT_EQ(readPicture(folder_.write("c.png", whole)).stored, picture.stored);
+    EXPECT_EQ(readPicture(folder.write("c.png", whole)).stored, picture.stored);
 }
 
 /// Of the frame's header: its marker, how many bits, and how many components.
@@ -438,7 +436,7 @@ TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
                                value + std::string(7, '\0')
                          : std::string("MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0", 19) +
                                value + std::string(6, '\0');
-        return readPicture(folder_.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
+        return readPicture(folder.write("exif.jpg", plain.substr(0, 2) + exif + plain.substr(2)))
             .stored;
     };
     for (int orientation = 1; orientation <= 8; ++orientation) {
@@ -567,7 +565,7 @@ TEST_F(Formats, TiffOfFloatsIsLinear) {
 TEST_F(Formats, OtherTiffFilesAreRefused) {
     const auto refusalOf = [&](const Layout& layout) {
         writeTiff<std::uint32_t>(path("a.tif"), 2, 2, layout, [](int) { return 0U; });
-        return errorText([&] { readPicture(path("a.tif")); }, folder_.path());
+        return errorText([&] { readPicture(path("a.tif")); }, folder.path());
     };
     EXPECT_EQ(refusalOf({.bits = 32}),
               "DIR/a.tif: 3 × 32 bits a pixel (sample format 1, photometric 2); allowed: grey or "
@@ -599,7 +597,7 @@ TEST_F(Formats, WhatIsNoneNamesThoseThatAreRead) {
               ".pbm, .pgm, .ppm, .pnm, .tga, .tif, .tiff, .jpg, .jpeg");
     EXPECT_EQ(errorOf("a.png", "GIF89a"), "DIR/a.png: not a PNG file");
     EXPECT_EQ(errorOf("a.tif", ""), "DIR/a.tif: Cannot read TIFF header");
-    EXPECT_EQ(errorText([&] { readPicture(path("none.ppm")); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { readPicture(path("none.ppm")); }, folder.path()),
               "cannot read DIR/none.ppm: No such file or directory");
     EXPECT_TRUE(hasReadEnding("a.b.tif"));
     EXPECT_TRUE(hasReadEnding("{frame}.jpeg"));

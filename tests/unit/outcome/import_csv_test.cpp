@@ -7,20 +7,18 @@
 namespace gfxrepro::outcome {
 namespace {
 
-struct ImportCsv : testing::Test {
+struct ImportCsv : FolderTest {
     ImportedNumbers read(const std::string& text) const {
-        return readImport({folder_.write("a.csv", text)});
+        return readImport({folder.write("a.csv", text)});
     }
     std::string refusal(const std::string& text) const {
-        return errorText([&] { read(text); }, folder_.path());
+        return errorText([&] { read(text); }, folder.path());
     }
     /// With columns of numbers.
     std::string wideRefusal(const std::string& text) const {
-        const ImportFiles files{folder_.write("a.csv", text), {{"ms", "ms"}, {"mse", "1"}}};
-        return errorText([&] { readImport(files); }, folder_.path());
+        const ImportFiles files{folder.write("a.csv", text), {{"ms", "ms"}, {"mse", "1"}}};
+        return errorText([&] { readImport(files); }, folder.path());
     }
-
-    const TemporaryFolder folder_;
 };
 
 /// In one order in all cases, so that one seed is one round; a metric without any draws none.
@@ -98,7 +96,7 @@ TEST_F(ImportCsv, AsOtherProgramsWriteIt) {
 
 TEST_F(ImportCsv, AColumnForEachMetric) {
     const ImportFiles files{
-        folder_.write("a.csv", "samples,process,ms,mse\n4,0,10,0.5\n4,1,11,\n16,0,40,0.1\n"),
+        folder.write("a.csv", "samples,process,ms,mse\n4,0,10,0.5\n4,1,11,\n16,0,40,0.1\n"),
         {{"ms", "ms"}, {"mse", "1"}}};
     const ImportedNumbers numbers = readImport(files);
     EXPECT_EQ(numbers.columns, std::vector<std::string>{"samples"});
@@ -162,12 +160,12 @@ TEST_F(ImportCsv, WhatIsWrongIsNamedWithItsLine) {
     EXPECT_EQ(refusal(head + "\xff,a,2,ms,,,,\n"), "DIR/a.csv:2: column 'n': is not UTF-8");
     EXPECT_EQ(refusal(head + std::string(1025, 'x') + ",a,2,ms,,,,\n"),
               "DIR/a.csv:2: column 'n': 1025 bytes; at most 1024 are allowed");
-    EXPECT_EQ(errorText([&] { readImport({folder_.path() / "none.csv"}); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { readImport({folder.path() / "none.csv"}); }, folder.path()),
               "cannot read DIR/none.csv: No such file or directory");
 }
 
 TEST_F(ImportCsv, AMessageMayHaveAnything) {
-    const auto file = folder_.write(
+    const auto file = folder.write(
         "records.csv", "n,metric,value,status,message\nx,,,error,\"\x1b[31mred\x1b[0m\n\x07\"\n");
     EXPECT_EQ(readImport({file}).rows.at(0).record.message, "\x1b[31mred\x1b[0m\n\x07");
     EXPECT_EQ(refusal("case_id,metric,value\na,mse,1\n"),

@@ -63,7 +63,7 @@ scene::Scene furnished(Params& params, std::uint64_t seed) {
     return scene;
 }
 
-struct KeptScenes : ::testing::Test {
+struct KeptScenes : FolderTest {
     KeptScenes() {
         folder.write("s/m/x.yaml",
                      "scene: m/x\ndoc: an x\nsources: [{generator: furnished, seed: 5}]\n");
@@ -87,7 +87,6 @@ struct KeptScenes : ::testing::Test {
 
     static constexpr std::uintmax_t kMostBytes = 3'000'000;  // two of 1.2 MB
     static constexpr scene::GeneratorInfo kGenerators[] = {{"furnished", "", furnished}};
-    TemporaryFolder folder;
 };
 
 TEST_F(KeptScenes, AreWhatWasMade) {

@@ -19,18 +19,17 @@ namespace {
 using Lines = std::vector<std::string>;
 using Points = std::vector<glm::vec3>;
 
-struct LoadClouds : testing::Test {
-    Scene xyz(const std::string& text) { return loadScene(folder_.write("a.XYZ", text)); }
+struct LoadClouds : FolderTest {
+    Scene xyz(const std::string& text) { return loadScene(folder.write("a.XYZ", text)); }
     Scene las(const std::string& bytes, const char* name = "a.las") {
-        return loadScene(folder_.write(name, bytes));
+        return loadScene(folder.write(name, bytes));
     }
     std::string xyzError(const std::string& text) {
-        return errorText([&] { xyz(text); }, folder_.path());
+        return errorText([&] { xyz(text); }, folder.path());
     }
     std::string lasError(const std::string& bytes, const char* name = "a.las") {
-        return errorText([&] { las(bytes, name); }, folder_.path());
+        return errorText([&] { las(bytes, name); }, folder.path());
     }
-    TemporaryFolder folder_;
 };
 
 TEST_F(LoadClouds, ReadsPlacesOfXyz) {

@@ -12,7 +12,7 @@ namespace gfxrepro::scene {
 namespace {
 
 /// The square, and behind it numbers of a test's own: accessor 4 on, of floats.
-struct PoseGltf : testing::Test {
+struct PoseGltf : FolderTest {
     /// An accessor of type `type` with these numbers; returns its number.
     int add(const std::string& type, std::size_t count, const std::vector<float>& numbers) {
         const std::size_t at = bytes_.size();
@@ -28,10 +28,10 @@ struct PoseGltf : testing::Test {
         return accessors_++;
     }
     fs::path write() {
-        folder_.write("square.bin", bytes_);
+        folder.write("square.bin", bytes_);
         document_["buffers"] =
             R"([{"uri":"square.bin","byteLength":)" + std::to_string(bytes_.size()) + "}]";
-        return folder_.write("a.gltf", text(document_));
+        return folder.write("a.gltf", text(document_));
     }
     Scene load() { return loadGltf(write()); }
 
@@ -39,7 +39,6 @@ struct PoseGltf : testing::Test {
     std::string bytes_ = squareBytes();
     int views_ = 3;
     int accessors_ = 4;
-    TemporaryFolder folder_;
 };
 
 const std::vector<float> kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -72,7 +71,7 @@ TEST_F(PoseGltf, JointsHoldASkinnedMeshWhereverItsNodeIs) {
     const std::string bound = document_["skins"];
     document_["skins"] =
         R"([{"joints":[2],"inverseBindMatrices":)" + std::to_string(add("MAT4", 1, bind)) + "}]";
-    EXPECT_EQ(errorText([&] { load(); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { load(); }, folder.path()),
               "DIR/a.gltf: skin 0: joint 0: the last row of its matrix is 0.5, 0, 0, 1; 0, 0, 0, 1 "
               "is allowed");
     document_["skins"] = bound;
@@ -88,7 +87,7 @@ TEST_F(PoseGltf, JointsHoldASkinnedMeshWhereverItsNodeIs) {
                   "left out: the instances of a skinned node (EXT_mesh_gpu_instancing)"});
 
     document_["scenes"] = R"([{"nodes":[0]}])";
-    EXPECT_EQ(errorText([&] { load(); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { load(); }, folder.path()),
               "DIR/a.gltf: skin 0: its joint, node 2, is not in the scene");
 }
 
@@ -119,7 +118,7 @@ TEST_F(PoseGltf, JointsShareAVertexByTheirWeights) {
     document_["meshes"] = R"([{"primitives":[{"indices":1,"attributes":{"POSITION":0,"JOINTS_0":)" +
                           std::to_string(bad) + R"(,"WEIGHTS_0":)" + std::to_string(weights) +
                           "}}]}]";
-    EXPECT_EQ(errorText([&] { load(); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { load(); }, folder.path()),
               "DIR/a.gltf: mesh 0 primitive 0: joint 2 is not one of the 2 of its skin");
 }
 

@@ -10,11 +10,11 @@
 namespace gfxrepro::scene {
 namespace {
 
-struct LoadGltf : testing::Test {
-    LoadGltf() { folder_.write("square.bin", squareBytes()); }
+struct LoadGltf : FolderTest {
+    LoadGltf() { folder.write("square.bin", squareBytes()); }
 
     Scene load(const Document& document) {
-        return loadGltf(folder_.write("a.gltf", text(document)));
+        return loadGltf(folder.write("a.gltf", text(document)));
     }
     Scene loadWith(const std::string& key, const std::string& value) {
         Document document = square();
@@ -22,15 +22,14 @@ struct LoadGltf : testing::Test {
         return load(document);
     }
     std::string error(const std::string& content) {
-        const auto path = folder_.write("a.gltf", content);
-        return errorText([&] { loadGltf(path); }, folder_.path());
+        const auto path = folder.write("a.gltf", content);
+        return errorText([&] { loadGltf(path); }, folder.path());
     }
     std::string errorWith(const std::string& key, const std::string& value) {
         Document document = square();
         document[key] = value;
         return error(text(document));
     }
-    TemporaryFolder folder_;
 };
 
 TEST_F(LoadGltf, ReadsASquare) {
@@ -56,10 +55,9 @@ TEST_F(LoadGltf, ReadsBinaryFiles) {
     const std::string content = "glTF" + word(2) + word(28 + json.size() + data.size()) +
                                 word(json.size()) + "JSON" + json + word(data.size()) +
                                 std::string("BIN\0", 4) + data;
-    EXPECT_EQ(loadGltf(folder_.write("a.glb", content)).triangleCount(), 2U);
-    const auto path = folder_.write("a.glb", content.substr(0, content.size() - 4));
-    EXPECT_EQ(errorText([&] { loadGltf(path); }, folder_.path()),
-              "DIR/a.glb: Invalid glTF binary.");
+    EXPECT_EQ(loadGltf(folder.write("a.glb", content)).triangleCount(), 2U);
+    const auto path = folder.write("a.glb", content.substr(0, content.size() - 4));
+    EXPECT_EQ(errorText([&] { loadGltf(path); }, folder.path()), "DIR/a.glb: Invalid glTF binary.");
 }
 
 TEST_F(LoadGltf, ConvertsNormalizedIntegers) {
@@ -81,7 +79,7 @@ TEST_F(LoadGltf, ColoursAreFloatsOrNormalized) {
     std::string& accessors = document["accessors"];
     const std::size_t colours = accessors.find(R"("type":"VEC4","normalized":true)");
     accessors.replace(colours + 14, 17, R"("normalized":false)");
-    const auto error = [&] { return errorText([&] { load(document); }, folder_.path()); };
+    const auto error = [&] { return errorText([&] { load(document); }, folder.path()); };
     const std::string refused =
         "DIR/a.gltf: accessor 2 has colours in integers that are not normalized; floats, or "
         "normalized unsigned bytes or shorts are allowed";
@@ -97,7 +95,7 @@ TEST_F(LoadGltf, ColoursAreFloatsOrNormalized) {
     const float nine = 9.0F;
     std::string bytes = squareBytes();
     bytes.replace(12, sizeof(nine), reinterpret_cast<const char*>(&nine), sizeof(nine));
-    folder_.write("square.bin", bytes);
+    folder.write("square.bin", bytes);
     const Scene scene = load(document);
     EXPECT_EQ(scene.meshes.at(0).colors.at(1), glm::vec3(9, 0, 0));
     EXPECT_EQ(scene.warnings,
@@ -467,7 +465,7 @@ TEST_F(LoadGltf, AimsCamerasAtTheMiddleOfTheScene) {
 }
 
 TEST_F(LoadGltf, DecodesPercentSignsAndStaysInItsFolder) {
-    folder_.write("sub/the square.bin", squareBytes());
+    folder.write("sub/the square.bin", squareBytes());
     EXPECT_EQ(loadWith("buffers", R"([{"byteLength":76,"uri":"sub/../sub/the%20square.bin"}])")
                   .triangleCount(),
               2U);
@@ -492,7 +490,7 @@ TEST_F(LoadGltf, FindsFilesByAnyName) {
     EXPECT_EQ(errorWith("buffers", named("%41+%zz.bin")),
               "DIR/a.gltf: the file 'A+%zz.bin' is not beside it");
     for (const char* name : {"100%.bin", "\u00FC.bin", "A+%zz.bin"}) {
-        folder_.write(name, squareBytes());
+        folder.write(name, squareBytes());
     }
     for (const char* uri : {"100%.bin", "%FC.bin", "%C3%BC.bin", "\u00FC.bin", "%41+%zz.bin"}) {
         EXPECT_EQ(loadWith("buffers", named(uri)).triangleCount(), 2U) << uri;
@@ -501,16 +499,16 @@ TEST_F(LoadGltf, FindsFilesByAnyName) {
 
 // What lies outside is there and would serve: it is not looked at by the parser's own means either.
 TEST_F(LoadGltf, ReadsNothingOutsideOfItsFolder) {
-    folder_.write("outside.bin", squareBytes());
+    folder.write("outside.bin", squareBytes());
     const auto refusal = [&](const std::string& key, const std::string& value) {
         Document document = square();
         document["buffers"] = R"([{"byteLength":76,"uri":"inside.bin"}])";
         document[key] = value;
-        folder_.write("model/inside.bin", squareBytes());
-        const auto path = folder_.write("model/a.gltf", text(document));
-        return errorText([&] { loadGltf(path); }, folder_.path());
+        folder.write("model/inside.bin", squareBytes());
+        const auto path = folder.write("model/a.gltf", text(document));
+        return errorText([&] { loadGltf(path); }, folder.path());
     };
-    const std::string absolute = (folder_.path() / "outside.bin").string();
+    const std::string absolute = (folder.path() / "outside.bin").string();
     const std::string outside =
         "DIR/model/a.gltf: the URI '../outside.bin' leaves the file's folder";
     EXPECT_EQ(refusal("buffers", R"([{"byteLength":76,"uri":"../outside.bin"}])"), outside);
@@ -579,7 +577,7 @@ TEST_F(LoadGltf, RefusesRangesThatAreNotThere) {
 
 TEST_F(LoadGltf, RefusesCoordinatesTooFarAway) {
     const float x = 3e38F;  // of vertex 2
-    folder_.write("square.bin", squareBytes().replace(24, 4, reinterpret_cast<const char*>(&x), 4));
+    folder.write("square.bin", squareBytes().replace(24, 4, reinterpret_cast<const char*>(&x), 4));
     EXPECT_EQ(error(text(square())),
               "DIR/a.gltf: mesh 0 primitive 0: its box reaches to (3e+38, 0, 0); -1e+09 to 1e+09 "
               "are allowed");

@@ -16,14 +16,14 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-struct LoadMeaning : testing::Test {
-    LoadMeaning() { folder_.write("square.bin", squareBytes()); }
+struct LoadMeaning : FolderTest {
+    LoadMeaning() { folder.write("square.bin", squareBytes()); }
 
     std::string gltfError(const std::string& key, const std::string& value) {
         Document document = square();
         document[key] = value;
-        const auto path = folder_.write("a.gltf", text(document));
-        const std::string error = errorText([&] { loadGltf(path); }, folder_.path());
+        const auto path = folder.write("a.gltf", text(document));
+        const std::string error = errorText([&] { loadGltf(path); }, folder.path());
         const std::string place = "DIR/a.gltf: ";
         return error.starts_with(place) ? error.substr(place.size()) : error;
     }
@@ -34,10 +34,8 @@ struct LoadMeaning : testing::Test {
         return gltfError("materials", "[{" + members + "}]");
     }
     Lines warningsOf(const std::string& name, const std::string& content) {
-        return loadScene(folder_.write(name, content)).warnings;
+        return loadScene(folder.write(name, content)).warnings;
     }
-
-    TemporaryFolder folder_;
 };
 
 TEST_F(LoadMeaning, NumbersOfGltfAreNumbers) {
@@ -143,9 +141,9 @@ TEST_F(LoadMeaning, RestsOfGltfAreSaid) {
     document["nodes"] = R"([{"mesh":0,"camera":0}])";
     document["cameras"] =
         R"([{"type":"perspective","perspective":{"yfov":1,"znear":0.5,"zfar":0.25}}])";
-    const auto path = folder_.write("a.gltf", text(document));
+    const auto path = folder.write("a.gltf", text(document));
     EXPECT_EQ(
-        errorText([&] { loadGltf(path); }, folder_.path()),
+        errorText([&] { loadGltf(path); }, folder.path()),
         "DIR/a.gltf: camera 0: zfar 0.25 and znear 0.5; a zfar above znear, or none, is allowed");
     std::string json = text(square());
     json.resize((json.size() + 3) / 4 * 4, ' ');
@@ -170,12 +168,12 @@ TEST_F(LoadMeaning, DataOfAnyMediaTypeIsRead) {
     document["materials"] = R"([{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}])";
     const auto load = [&](const std::string& uri) {
         document["images"] = R"([{"uri":")" + uri + R"("}])";
-        return loadGltf(folder_.write("a.gltf", text(document)));
+        return loadGltf(folder.write("a.gltf", text(document)));
     };
     for (const char* type : {"image/png", "image/jpg", "image/x-png;charset=utf8", ""}) {
         EXPECT_EQ(load(fmt::format("data:{};base64,{}", type, png)).textures.size(), 1U) << type;
     }
-    EXPECT_EQ(errorText([&] { load("data:image/jpg," + std::string(200, 'a')); }, folder_.path()),
+    EXPECT_EQ(errorText([&] { load("data:image/jpg," + std::string(200, 'a')); }, folder.path()),
               "DIR/a.gltf: image 0: 'data:image/jpg," + std::string(85, 'a') +
                   "…' (215 bytes) cannot be read");
     document.erase("images");
@@ -186,7 +184,7 @@ TEST_F(LoadMeaning, DataOfAnyMediaTypeIsRead) {
     document["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0}}]}])";
     document["buffers"] =
         R"([{"byteLength":36,"uri":"data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAACAPwAAgD8AAAA+"}])";
-    const Scene scene = loadGltf(folder_.write("a.gltf", text(document)));
+    const Scene scene = loadGltf(folder.write("a.gltf", text(document)));
     EXPECT_EQ(scene.bounds().max, glm::vec3(1, 1, 0.125F)) << "'+' is a digit";
 }
 
@@ -200,7 +198,7 @@ TEST_F(LoadMeaning, ColoursThatNoSurfaceHasAreSaid) {
                      "taken as it is: a metallic factor outside of 0 to 1",
                      "taken as it is: a roughness outside of 0 to 1",
                      "taken as it is: an emissive colour below 0"}));
-    folder_.write("a.mtl", "newmtl a\nKd 255 0 0\nKe 5 5 5\nnewmtl b\nKd 1 1 1\nd 1\n");
+    folder.write("a.mtl", "newmtl a\nKd 255 0 0\nKe 5 5 5\nnewmtl b\nKd 1 1 1\nd 1\n");
     EXPECT_EQ(
         warningsOf("a.obj",
                    "mtllib a.mtl\nv 0 0 0 -1 0 0\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nusemtl a\nf 1 2 3\n"
@@ -217,7 +215,7 @@ TEST_F(LoadMeaning, ColoursThatNoSurfaceHasAreSaid) {
 
 TEST_F(LoadMeaning, OfMaterialFilesEachLineIsReadOrSaid) {
     const auto warnings = [&](const std::string& mtl) {
-        folder_.write("a.mtl", mtl);
+        folder.write("a.mtl", mtl);
         return warningsOf("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
     };
     EXPECT_EQ(warnings("newmtl a\nKd 0.5\nKe 0 0 0 # none\nd -halo 1\nNs 9\n").size(), 1U);
@@ -229,9 +227,9 @@ TEST_F(LoadMeaning, OfMaterialFilesEachLineIsReadOrSaid) {
     EXPECT_EQ(warnings("# a file\n\nKd 1 0 0\nnewmtl a\nnewmtl a\nKd 0 1 0\nNs 1\n"),
               (Lines{"left out: a line of a material file that is of no material (3 times)",
                      "left out: a material of the name of one before it"}));
-    folder_.write("b.mtl", "newmtl a\nKd 0 1 0\n");
-    folder_.write("a.mtl", "newmtl a\nKd 1 0 0\n");
-    const Scene scene = loadObj(folder_.write(
+    folder.write("b.mtl", "newmtl a\nKd 0 1 0\n");
+    folder.write("a.mtl", "newmtl a\nKd 1 0 0\n");
+    const Scene scene = loadObj(folder.write(
         "a.obj",
         "mtllib a.mtl b.mtl\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n"));
     EXPECT_EQ(scene.materials.at(0).baseColor.r, 1.0F);
@@ -248,17 +246,17 @@ TEST_F(LoadMeaning, MatricesOfNodesArePlacesAndNoProjections) {
               "node 0: the last row of its matrix is 0, 0, 0, 2; 0, 0, 0, 1 is allowed");
     Document document = square();
     document["nodes"] = R"([{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,0.9999999]}])";
-    const Scene scene = loadGltf(folder_.write("a.gltf", text(document)));
+    const Scene scene = loadGltf(folder.write("a.gltf", text(document)));
     EXPECT_EQ(scene.instances.at(0).worldFromMesh, glm::mat4(1.0F));
 }
 
 /// Files are found by their bytes, else by what these are in UTF-8; materials by the latter.
 TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
-    folder_.write("\u00FC.mtl", "newmtl \xFC\nmap_Kd \xE4.png\n");
-    folder_.write("\u00E4.png", image::encodePng(image::Image8(1, 1, 3)));
-    const auto path = folder_.write("a.obj",
-                                    "mtllib \xFC.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
-                                    "usemtl \u00FC\nf 1/1 2/1 3/1\n");
+    folder.write("\u00FC.mtl", "newmtl \xFC\nmap_Kd \xE4.png\n");
+    folder.write("\u00E4.png", image::encodePng(image::Image8(1, 1, 3)));
+    const auto path = folder.write("a.obj",
+                                   "mtllib \xFC.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n"
+                                   "usemtl \u00FC\nf 1/1 2/1 3/1\n");
     const Scene scene = loadScene(path);
     EXPECT_EQ(scene.warnings, std::vector<std::string>{});
     EXPECT_EQ(scene.materials.at(0).name, "\u00FC");
@@ -267,21 +265,21 @@ TEST_F(LoadMeaning, NamesOfLatin1AreThoseOfUtf8) {
     std::ranges::sort(opened);
     EXPECT_EQ(opened, filesBeside(path));
     // That of its own bytes goes first.
-    folder_.write("\xFC.mtl", "newmtl \u00FC\nKd 0 1 0\n");
+    folder.write("\xFC.mtl", "newmtl \u00FC\nKd 0 1 0\n");
     EXPECT_EQ(loadScene(path).materials.at(0).baseColor, glm::vec4(0, 1, 0, 1));
 }
 
 TEST_F(LoadMeaning, NamesOfLatin1AreMadeUtf8) {
-    folder_.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nnewmtl \u00FC\nKd 1 0 0\nK\xFC 1\n");
-    const Scene scene = loadScene(folder_.write("\xFC.obj",
-                                                "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
-                                                "usemtl gr\xFCn\nf 1 2 3\nusemtl \u00FC\n"
-                                                "f 1 2 3\n"));
+    folder.write("a.mtl", "newmtl gr\xFCn\nKd 0 1 0\nnewmtl \u00FC\nKd 1 0 0\nK\xFC 1\n");
+    const Scene scene = loadScene(folder.write("\xFC.obj",
+                                               "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"
+                                               "usemtl gr\xFCn\nf 1 2 3\nusemtl \u00FC\n"
+                                               "f 1 2 3\n"));
     EXPECT_EQ(scene.materials.at(0).name, "gr\u00FCn");
     EXPECT_EQ(scene.materials.at(1).name, "\u00FC");
     EXPECT_EQ(scene.warnings, Lines{"left out: 'K\u00FC' of a material file"});
-    saveGlb(folder_.path() / "a.glb", scene);
-    const Scene saved = loadScene(folder_.path() / "a.glb");
+    saveGlb(folder.path() / "a.glb", scene);
+    const Scene saved = loadScene(folder.path() / "a.glb");
     EXPECT_EQ(saved.materials.at(0).name, "gr\u00FCn");
     EXPECT_EQ(saved.meshes.at(0).name, scene.meshes.at(0).name);
 }
@@ -296,23 +294,23 @@ struct PlyMeaning : LoadMeaning {
 };
 
 TEST_F(PlyMeaning, PropertiesAreDeclaredOnce) {
-    const auto path = folder_.write("a.ply", ply("property float x\n", ""));
-    EXPECT_EQ(errorText([&] { loadPly(path); }, folder_.path()),
+    const auto path = folder.write("a.ply", ply("property float x\n", ""));
+    EXPECT_EQ(errorText([&] { loadPly(path); }, folder.path()),
               "DIR/a.ply:7: property 'x' of element 'vertex' is declared twice");
     // What nobody reads fills rows up; under two names, and of faces, the first is taken.
     const std::string gaps = ply("property uchar gap\nproperty uchar gap\n",
                                  "0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2\n");
     EXPECT_EQ(warningsOf("a.ply", gaps),
               Lines{"left out: the property 'gap' of vertices (2 times)"});
-    const Scene scene = loadPly(folder_.write(
-        "a.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n"
-                     "property uchar diffuse_red\n",
-                     "0 0 0 255 0 0 9\n1 0 0 255 0 0 9\n0 1 0 255 0 0 9\n3 0 1 2\n")));
+    const Scene scene = loadPly(
+        folder.write("a.ply", ply("property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                                  "property uchar diffuse_red\n",
+                                  "0 0 0 255 0 0 9\n1 0 0 255 0 0 9\n0 1 0 255 0 0 9\n3 0 1 2\n")));
     EXPECT_EQ(scene.meshes.at(0).colors.at(0), glm::vec3(1, 0, 0));
     EXPECT_EQ(scene.warnings, Lines{"left out: the property 'diffuse_red' of vertices"});
     std::string twice = ply("", "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 3 0 1 2\n");
     twice.insert(twice.find("end_header"), "property list uchar int vertex_index\n");
-    const Scene faces = loadPly(folder_.write("a.ply", twice));
+    const Scene faces = loadPly(folder.write("a.ply", twice));
     EXPECT_EQ(faces.triangleCount(), 1U);
     EXPECT_EQ(faces.warnings, Lines{"left out: the property 'vertex_index' of faces"});
 }

@@ -10,13 +10,12 @@
 namespace gfxrepro::scene {
 namespace {
 
-struct LoadObj : testing::Test {
-    Scene load(const std::string& content) { return loadObj(folder_.write("a.obj", content)); }
+struct LoadObj : FolderTest {
+    Scene load(const std::string& content) { return loadObj(folder.write("a.obj", content)); }
     std::string error(const std::string& content) {
-        const auto path = folder_.write("a.obj", content);
-        return errorText([&] { loadObj(path); }, folder_.path());
+        const auto path = folder.write("a.obj", content);
+        return errorText([&] { loadObj(path); }, folder.path());
     }
-    TemporaryFolder folder_;
 };
 
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -106,7 +105,7 @@ TEST_F(LoadObj, TakesColoursAsADisplayShowsThem) {
 }
 
 TEST_F(LoadObj, ReadsNamesWithNumberSignsAndByteOrderMarks) {
-    folder_.write("a.mtl", "\xEF\xBB\xBFnewmtl skin#1\nKd 1 0 0\nnewmtl skin #2\nKd 0 1 0\n");
+    folder.write("a.mtl", "\xEF\xBB\xBFnewmtl skin#1\nKd 1 0 0\nnewmtl skin #2\nKd 0 1 0\n");
     const Scene scene = load("\xEF\xBB\xBFmtllib a.mtl\n" + kSquare +
                              "usemtl skin#1\nf 1 2 3\nusemtl skin #2\nf 1 3 4\n"
                              "usemtl skin#1 # again\nf 2 3 4\n");
@@ -118,8 +117,8 @@ TEST_F(LoadObj, ReadsNamesWithNumberSignsAndByteOrderMarks) {
 }
 
 TEST_F(LoadObj, FindsSeveralMaterialFiles) {
-    folder_.write("a.mtl", "newmtl red\nKd 1 0 0\n");
-    folder_.write("b c.mtl", "newmtl green\nKd 0 1 0\n");
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+    folder.write("b c.mtl", "newmtl green\nKd 0 1 0\n");
     const std::string faces = kSquare + "usemtl red\nf 1 2 3\nusemtl green\nf 1 3 4\n";
     for (const char* lines :
          {"mtllib a.mtl\nmtllib b c.mtl\n", "mtllib a.mtl\nmtllib \"b c.mtl\"\n",
@@ -129,7 +128,7 @@ TEST_F(LoadObj, FindsSeveralMaterialFiles) {
         EXPECT_EQ(scene.materials.at(1).baseColor.g, 1.0F) << lines;
         EXPECT_TRUE(scene.warnings.empty()) << lines;
     }
-    folder_.write("b.mtl", "newmtl green\nKd 0 1 0\n");
+    folder.write("b.mtl", "newmtl green\nKd 0 1 0\n");
     EXPECT_EQ(load("mtllib a.mtl b.mtl\n" + faces).materials.at(1).baseColor.g, 1.0F);
     EXPECT_EQ(load("mtllib a.mtl gone.mtl\n" + faces).warnings,
               std::vector<std::string>{
@@ -137,9 +136,9 @@ TEST_F(LoadObj, FindsSeveralMaterialFiles) {
 }
 
 TEST_F(LoadObj, SaysWhichTexturesAndMaterialsAreMissing) {
-    folder_.write("a.mtl",
-                  "newmtl a\nmap_Kd C:\\x\\wood.png\nnewmtl b\nmap_Kd a.tga\nmap_d d.png\n");
-    folder_.write("a.tga", "something");
+    folder.write("a.mtl",
+                 "newmtl a\nmap_Kd C:\\x\\wood.png\nnewmtl b\nmap_Kd a.tga\nmap_d d.png\n");
+    folder.write("a.tga", "something");
     EXPECT_EQ(load("mtllib a.mtl\n" + kSquare +
                    "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 2 3 4\n")
                   .warnings,
@@ -152,12 +151,12 @@ TEST_F(LoadObj, SaysWhichTexturesAndMaterialsAreMissing) {
 
 /// As programs write them on another machine.
 TEST_F(LoadObj, OfAbsolutePathsTheFileBesideTheModelIsTaken) {
-    folder_.write("wood.png", image::encodePng(image::Image8(1, 1, 3)));
-    folder_.write("my wood.png", image::encodePng(image::Image8(1, 1, 3)));
+    folder.write("wood.png", image::encodePng(image::Image8(1, 1, 3)));
+    folder.write("my wood.png", image::encodePng(image::Image8(1, 1, 3)));
     for (const char* name :
          {"C:\\dir\\wood.png", "C:/dir/wood.png", "\\\\host\\dir\\wood.png", "/home/x/wood.png",
           "\"C:\\my dir\\wood.png\"", "\"wood.png\"", "-s 1 1 1 \"my wood.png\""}) {
-        folder_.write("a.mtl", fmt::format("newmtl a\nmap_Kd {}\n", name));
+        folder.write("a.mtl", fmt::format("newmtl a\nmap_Kd {}\n", name));
         for (const char* library :
              {"C:\\dir\\a.mtl", "\"/home/x y/a.mtl\"", "D:\\a.mtl", "a.mtl"}) {
             const Scene scene = load(fmt::format("mtllib {}\n", library) + kSquare +
@@ -165,18 +164,18 @@ TEST_F(LoadObj, OfAbsolutePathsTheFileBesideTheModelIsTaken) {
             EXPECT_EQ(scene.textures.size(), 1U) << name << " of " << library;
             EXPECT_EQ(scene.warnings, std::vector<std::string>{}) << name << " of " << library;
             EXPECT_EQ(scene.filesBeside.size(), 2U);
-            EXPECT_EQ(filesBeside(folder_.path() / "a.obj").size(), 2U);
+            EXPECT_EQ(filesBeside(folder.path() / "a.obj").size(), 2U);
         }
     }
 }
 
 TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
-    folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    folder.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
     const auto warnings = [&](const std::string& gamma) {
         std::string png = image::encodePng(image::Image8(1, 1, 3));
         // A chunk before the others: its length, its name, what it holds, a checksum.
         png.insert(33, std::string("\0\0\0\x04", 4) + "gAMA" + gamma + std::string(4, '\0'));
-        folder_.write("a.png", png);
+        folder.write("a.png", png);
         return load("mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\nf 1/1 2/1 3/1 4/1\n").warnings;
     };
     EXPECT_EQ(warnings(std::string("\0\0\xB1\x8F", 4)), std::vector<std::string>{});
@@ -186,8 +185,8 @@ TEST_F(LoadObj, SaysWhichColoursOfTexturesAreNotRead) {
 }
 
 TEST_F(LoadObj, SaysWhichTexturesFacesCannotHave) {
-    folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
-    folder_.write("a.png", image::encodePng(image::Image8(1, 1, 3)));
+    folder.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    folder.write("a.png", image::encodePng(image::Image8(1, 1, 3)));
     const std::vector<std::string> said{"left out: a texture of faces without texture coordinates"};
     const std::string start = "mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\n";
     EXPECT_EQ(load(start + "f 1 2 3 4\n").warnings, said);
@@ -196,7 +195,7 @@ TEST_F(LoadObj, SaysWhichTexturesFacesCannotHave) {
 
 TEST_F(LoadObj, ReadsWhatIsUnusual) {
     const float half = 0.5F;
-    folder_.write("a.mtl", "newmtl a\nKd spectral red.rfl 1.0\nKe xyz 1 1 1\nd -halo 0.5\n");
+    folder.write("a.mtl", "newmtl a\nKd spectral red.rfl 1.0\nKe xyz 1 1 1\nd -halo 0.5\n");
     const Scene scene = load("mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 \\ \n3 4\n");
     EXPECT_EQ(scene.triangleCount(), 2U);
     EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(glm::vec3(0.8F), half));
@@ -250,9 +249,9 @@ TEST_F(LoadObj, SaysWhichNumbersAndOptionsItLeavesOut) {
                      "left out: further numbers of the line 'vt' (2 times)"}));
     EXPECT_EQ(load("v 0 0 0 1 0 0 1\nv 1 0 0 1 0 0 1\nv 1 1 0 1 0 0 1\nf 1 2 3\n").warnings,
               Lines{"left out: further numbers of the line 'v' (3 times)"});
-    image::writePng(folder_.path() / "a.png", image::Image8(2, 1, 1, 128));
+    image::writePng(folder.path() / "a.png", image::Image8(2, 1, 1, 128));
     const auto warnings = [&](const std::string& options) {
-        folder_.write("a.mtl", "newmtl a\nmap_Kd " + options + "a.png\n");
+        folder.write("a.mtl", "newmtl a\nmap_Kd " + options + "a.png\n");
         const Scene scene =
             load("mtllib a.mtl\nvt 0 0\n" + kSquare + "usemtl a\nf 1/1 2/1 3/1 4/1\n");
         EXPECT_EQ(scene.materials.at(0).baseColorTexture, 0) << options;
@@ -266,10 +265,10 @@ TEST_F(LoadObj, SaysWhichNumbersAndOptionsItLeavesOut) {
 }
 
 TEST_F(LoadObj, SplitsByMaterial) {
-    image::writePng(folder_.path() / "wood grain.png", image::Image8(2, 1, 1, 128));
-    folder_.write("a.mtl",
-                  "newmtl wood\nKd 1 0.5 0.25\nKe 2 0 0\nNs 0\nd 0.5\nNi 1.4\n"
-                  "map_Kd wood grain.png\nnewmtl glass\nKd 1\nTr 0.9\nmap_Kd gone.png\n");
+    image::writePng(folder.path() / "wood grain.png", image::Image8(2, 1, 1, 128));
+    folder.write("a.mtl",
+                 "newmtl wood\nKd 1 0.5 0.25\nKe 2 0 0\nNs 0\nd 0.5\nNi 1.4\n"
+                 "map_Kd wood grain.png\nnewmtl glass\nKd 1\nTr 0.9\nmap_Kd gone.png\n");
     const Scene scene = load("mtllib a.mtl\n" + kSquare +
                              "usemtl wood\nf 1 2 3\nusemtl glass\nf 1 3 4\nusemtl wood\nf 2 3 4\n");
     ASSERT_EQ(scene.meshes.size(), 2U);
@@ -319,8 +318,8 @@ TEST_F(LoadObj, ReadsVerticesWithoutFacesAsPoints) {
 
 /// A path is often the last word of one.
 TEST_F(LoadObj, CommentsAreNotContinued) {
-    folder_.write("a.mtl", "# C:\\\nnewmtl red\nKd 1 0 \\\n 0 # D:\\\nNs 96\n");
-    const Scene scene = loadObj(folder_.write(
+    folder.write("a.mtl", "# C:\\\nnewmtl red\nKd 1 0 \\\n 0 # D:\\\nNs 96\n");
+    const Scene scene = loadObj(folder.write(
         "a.obj",
         "# C:\\models\\\nmtllib a.mtl # D:\\ \r\nv 0 0 0 # first \\\nv 1 0 \\\n0 # \\\nv 0 1 0\n"
         "usemtl red\nf 1 2 3\n"));
@@ -333,7 +332,7 @@ TEST_F(LoadObj, CommentsAreNotContinued) {
 /// By the format, and as other readers have it, a backslash continues every line of an OBJ file.
 TEST_F(LoadObj, NamesThatTakeTheNextLineAreSaid) {
     const std::string head = "mtllib a.mtl\n" + kSquare;
-    folder_.write("a.mtl", "newmtl a\nmap_Kd C:\\tex\\\nKd 1 0 0\nKs 1 1\\\n 1\n");
+    folder.write("a.mtl", "newmtl a\nmap_Kd C:\\tex\\\nKd 1 0 0\nKs 1 1\\\n 1\n");
     const std::string said = "left out: a line that the one before takes, as that ends in '\\'";
     for (const char* line :
          {"g C:\\part\\", "o part\\ ", "g part\\\r", "g part \\", "s off\\", "lod a\\"}) {
@@ -346,7 +345,7 @@ TEST_F(LoadObj, NamesThatTakeTheNextLineAreSaid) {
         (std::vector<std::string>{
             "left out: 'Ks' of a material file", said + " (3 times)",
             "left out: the texture 'C:\\tex Kd 1 0 0', which is not beside the model"}));
-    folder_.write("a.mtl", "newmtl a\nKa 1 1 1\\\nKd 1 0 0\n");
+    folder.write("a.mtl", "newmtl a\nKa 1 1 1\\\nKd 1 0 0\n");
     EXPECT_EQ(load(head + "usemtl a\nf 1 2 3\nf 1 3 4\n").warnings, std::vector{said});
     // Names on two lines, and numbers, are continued as they are meant.
     EXPECT_EQ(load(kSquare + "g a \\\nb\nf 1 2\\\n 3\nf 1 3 4\n").warnings,
@@ -375,9 +374,9 @@ TEST_F(LoadObj, SaysWhereItIsWrong) {
 
 TEST_F(LoadObj, AFileOfZerosHasItsErrorSoonAndInALine) {
     const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
-        const auto path = folder_.write("a.obj", head);
+        const auto path = folder.write("a.obj", head);
         fs::resize_file(path, bytes);  // nearly all of it a hole
-        return errorText([&] { loadObj(path); }, folder_.path());
+        return errorText([&] { loadObj(path); }, folder.path());
     };
     EXPECT_EQ(errorOf(kSquare + "usemtl ", 100'000'000),
               "DIR/a.obj:5: a line of " + std::to_string(100'000'000 - kSquare.size()) +
@@ -392,11 +391,11 @@ TEST_F(LoadObj, AFileOfZerosHasItsErrorSoonAndInALine) {
 }
 
 TEST_F(LoadObj, RefusesBrokenMaterialFilesAndTextures) {
-    folder_.write("a.mtl", "newmtl a\nKd red\n");
+    folder.write("a.mtl", "newmtl a\nKd red\n");
     const std::string content = "mtllib a.mtl\n" + kSquare + "usemtl a\nf 1 2 3\n";
     EXPECT_EQ(error(content), "DIR/a.mtl:2: 'red' is not a finite number");
-    folder_.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
-    folder_.write("a.png", "\x89PNG, but broken");
+    folder.write("a.mtl", "newmtl a\nmap_Kd a.png\n");
+    folder.write("a.png", "\x89PNG, but broken");
     EXPECT_THAT(error(content), StartsWith("DIR/a.png: "));
 }
 

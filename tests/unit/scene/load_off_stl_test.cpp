@@ -15,12 +15,12 @@ namespace {
 using namespace std::string_literals;
 using Lines = std::vector<std::string>;
 
-struct LoadOffStl : testing::Test {
-    Scene off(const std::string& text) { return loadScene(folder_.write("a.off", text)); }
-    Scene stl(const std::string& text) { return loadScene(folder_.write("a.STL", text)); }
+struct LoadOffStl : FolderTest {
+    Scene off(const std::string& text) { return loadScene(folder.write("a.off", text)); }
+    Scene stl(const std::string& text) { return loadScene(folder.write("a.STL", text)); }
     template <class Load>
     std::string error(Load&& load) {
-        return errorText(load, folder_.path());
+        return errorText(load, folder.path());
     }
     std::string offError(const std::string& text) {
         return error([&] { off(text); });
@@ -28,7 +28,6 @@ struct LoadOffStl : testing::Test {
     std::string stlError(const std::string& text) {
         return error([&] { stl(text); });
     }
-    TemporaryFolder folder_;
 };
 
 double areaOf(const Scene& scene) {

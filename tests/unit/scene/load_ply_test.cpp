@@ -9,13 +9,12 @@
 namespace gfxrepro::scene {
 namespace {
 
-struct LoadPly : testing::Test {
-    Scene load(const std::string& content) { return loadPly(folder_.write("a.ply", content)); }
+struct LoadPly : FolderTest {
+    Scene load(const std::string& content) { return loadPly(folder.write("a.ply", content)); }
     std::string error(const std::string& content) {
-        const auto path = folder_.write("a.ply", content);
-        return errorText([&] { loadPly(path); }, folder_.path());
+        const auto path = folder.write("a.ply", content);
+        return errorText([&] { loadPly(path); }, folder.path());
     }
-    TemporaryFolder folder_;
 };
 
 const std::string kAscii =
@@ -281,9 +280,9 @@ TEST_F(LoadPly, AHeaderOfManyElementsIsReadAtOnce) {
 
 TEST_F(LoadPly, AFileOfZerosHasItsErrorSoonAndInALine) {
     const auto errorOf = [&](const std::string& head, std::uintmax_t bytes) {
-        const auto path = folder_.write("a.ply", head);
+        const auto path = folder.write("a.ply", head);
         fs::resize_file(path, bytes);  // nearly all of it a hole
-        return errorText([&] { loadPly(path); }, folder_.path());
+        return errorText([&] { loadPly(path); }, folder.path());
     };
     EXPECT_EQ(errorOf("ply\nformat ascii 1.0\ncomment ", 100'000'000),
               "DIR/a.ply:3: a line of 99999979 bytes; a header's have at most 65536");
