@@ -11,6 +11,7 @@
 #include "engine/metrics/flip.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -270,9 +271,7 @@ TEST_F(ImageCommands, CropKeepsChannelsAndWhereTheyAre) {
 
 TEST_F(ImageCommands, CropCountsFromTheCornerOfWhatIsShown) {
     ImageF ramp(4, 4, 1);
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 4; ++x) ramp.at(x, y) = static_cast<float>(4 * y + x);
-    }
+    for (const auto [y, x] : test::grid(4, 4)) ramp.at(x, y) = static_cast<float>(4 * y + x);
     ExrImage exr;
     exr.add(ramp, {"Y"}, image::ExrPixelType::Float);
     exr.displayWindow = image::Rectangle{1, 2, 2, 2};  // of its columns and rows

@@ -10,6 +10,7 @@
 #include "runner/records/images.h"
 #include "runner/tables/labels.h"
 #include "tests/cli/cli_support.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -62,11 +63,9 @@ TEST_P(OwnExperimentOf, FiveLinesGivesTimesPicturesAndACurve) {
     const FiveLines& lines = GetParam();
     const TemporaryFolder folder;
     image::Image16 heights(65, 65, 1);
-    for (int y = 0; y < 65; ++y) {
-        for (int x = 0; x < 65; ++x) {
-            const int rim = std::min({x, y, 64 - x, 64 - y});
-            heights.at(x, y) = static_cast<std::uint16_t>(400 * rim);
-        }
+    for (const auto [y, x] : test::grid(65, 65)) {
+        const int rim = std::min({x, y, 64 - x, 64 - y});
+        heights.at(x, y) = static_cast<std::uint16_t>(400 * rim);
     }
     image::writePng(folder.path() / "mountain.png", heights);
     const std::string config = folder.write(
@@ -247,9 +246,8 @@ TEST_F(OwnExperiment, CheckFindsWhatASceneReferenceOrAProfileFixesAndTheFileSwee
 /// Stands at `name`: 17 × 17 samples that rise by `step` a column.
 void writeRamp(const TemporaryFolder& folder, const std::string& name, int step) {
     image::Image16 heights(17, 17, 1);
-    for (int y = 0; y < 17; ++y) {
-        for (int x = 0; x < 17; ++x) heights.at(x, y, 0) = static_cast<std::uint16_t>(x * step);
-    }
+    for (const auto [y, x] : test::grid(17, 17))
+        heights.at(x, y, 0) = static_cast<std::uint16_t>(x * step);
     image::writePng(folder.path() / name, heights);
 }
 

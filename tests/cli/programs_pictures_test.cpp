@@ -5,6 +5,7 @@
 #include "engine/image/png_io.h"
 #include "runner/records/images.h"
 #include "tests/cli/cli_support.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -30,11 +31,9 @@ struct PicturesOfPrograms : RunTest {
 TEST_F(PicturesOfPrograms, APartOfThePictureIsHeldAgainstThatPartOfItsTruth) {
     const auto write = [&](const char* name, const image::Rectangle& data, int width) {
         ImageF colour(data.width, data.height, 3);
-        for (int y = 0; y < data.height; ++y) {
-            for (int x = 0; x < data.width; ++x) {
-                colour.at(x, y, 0) = 0.01F * static_cast<float>(data.left + x);
-                colour.at(x, y, 1) = 0.01F * static_cast<float>(data.top + y);
-            }
+        for (const auto [y, x] : test::grid(data.height, data.width)) {
+            colour.at(x, y, 0) = 0.01F * static_cast<float>(data.left + x);
+            colour.at(x, y, 1) = 0.01F * static_cast<float>(data.top + y);
         }
         image::ExrImage exr;
         exr.add(colour, {"R", "G", "B"}, image::ExrPixelType::Float);

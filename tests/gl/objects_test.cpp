@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -239,17 +240,14 @@ void main() { colour = vec4(gl_FragCoord.xy, 3.0, 4.0); }
 
     const image::ImageF image = colour.readImage(4);
     const std::vector<float> depths = depth.read<float>(GL_DEPTH_COMPONENT, GL_FLOAT, 1);
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 4; ++x) {
-            const int rowFromBottom = 3 - y;
-            const bool isInside = x + rowFromBottom < 4;
-            const auto row = static_cast<float>(rowFromBottom);
-            EXPECT_EQ(image.at(x, y, 0), isInside ? static_cast<float>(x) + 0.5F : -1.0F);
-            EXPECT_EQ(image.at(x, y, 1), isInside ? row + 0.5F : -2.0F);
-            EXPECT_EQ(image.at(x, y, 3), isInside ? 4.0F : -4.0F);
-            EXPECT_EQ(depths[static_cast<std::size_t>(rowFromBottom * 4 + x)],
-                      isInside ? 0.5F : 1.0F);
-        }
+    for (const auto [y, x] : test::grid(4, 4)) {
+        const int rowFromBottom = 3 - y;
+        const bool isInside = x + rowFromBottom < 4;
+        const auto row = static_cast<float>(rowFromBottom);
+        EXPECT_EQ(image.at(x, y, 0), isInside ? static_cast<float>(x) + 0.5F : -1.0F);
+        EXPECT_EQ(image.at(x, y, 1), isInside ? row + 0.5F : -2.0F);
+        EXPECT_EQ(image.at(x, y, 3), isInside ? 4.0F : -4.0F);
+        EXPECT_EQ(depths[static_cast<std::size_t>(rowFromBottom * 4 + x)], isInside ? 0.5F : 1.0F);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "engine/scene/generators.h"
 #include "scenes/outdoor/outdoor.h"
 #include "scenes/registry.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::raycast {
 namespace {
@@ -53,17 +54,14 @@ struct LivingRoom : testing::Test {
         const float slope = std::tan(0.5F * camera.verticalFovRad);
         int reflective = 0;
         int planar = 0;
-        for (int y = 0; y < kSizePx; ++y) {
-            for (int x = 0; x < kSizePx; ++x) {
-                const float sx = slope * (static_cast<float>(2 * x + 1) / kSizePx - 1.0F);
-                const float sy = slope * (static_cast<float>(2 * y + 1) / kSizePx - 1.0F);
-                const auto hit =
-                    tracer_->closestHit(camera.position, forward + sx * right + sy * up);
-                EXPECT_TRUE(hit.has_value()) << "the room has a hole";
-                if (!hit || !reflects(meshOf(hit->instance))) continue;
-                ++reflective;
-                planar += isPlanar(meshOf(hit->instance));
-            }
+        for (const auto [y, x] : test::grid(kSizePx, kSizePx)) {
+            const float sx = slope * (static_cast<float>(2 * x + 1) / kSizePx - 1.0F);
+            const float sy = slope * (static_cast<float>(2 * y + 1) / kSizePx - 1.0F);
+            const auto hit = tracer_->closestHit(camera.position, forward + sx * right + sy * up);
+            EXPECT_TRUE(hit.has_value()) << "the room has a hole";
+            if (!hit || !reflects(meshOf(hit->instance))) continue;
+            ++reflective;
+            planar += isPlanar(meshOf(hit->instance));
         }
         return {static_cast<double>(reflective) / (kSizePx * kSizePx),
                 reflective > 0 ? static_cast<double>(planar) / reflective : 0.0};
@@ -195,13 +193,11 @@ struct FourObjects : testing::Test {
         for (int axis = isFrontOnly ? 2 : 0; axis < 3; ++axis) {
             for (const float side : {1.0F, 0.0F}) {
                 if (isFrontOnly && side == 0.0F) continue;
-                for (int i = 0; i < kSamples; ++i) {
-                    for (int j = 0; j < kSamples; ++j) {
-                        glm::vec3 share(side);
-                        share[(axis + 1) % 3] = (static_cast<float>(i) + 0.37F) / kSamples;
-                        share[(axis + 2) % 3] = (static_cast<float>(j) + 0.41F) / kSamples;
-                        samples.push_back(box.min + box.size() * share);
-                    }
+                for (const auto [i, j] : test::grid(kSamples, kSamples)) {
+                    glm::vec3 share(side);
+                    share[(axis + 1) % 3] = (static_cast<float>(i) + 0.37F) / kSamples;
+                    share[(axis + 2) % 3] = (static_cast<float>(j) + 0.41F) / kSamples;
+                    samples.push_back(box.min + box.size() * share);
                 }
             }
         }
@@ -259,18 +255,16 @@ TEST_F(FourObjects, LayersFromTheLeft) {
     std::set<char> layers[3];
     std::set<char> firstFromTheRight;
     constexpr int kAcross = 600;
-    for (int j = 0; j < kAcross / 4; ++j) {
-        for (int i = 0; i < kAcross; ++i) {
-            // Points of a plane behind the objects that covers them from both eyes.
-            const glm::vec3 point(40.0F * (static_cast<float>(i) + 0.5F) / kAcross - 20.0F,
-                                  16.0F * (static_cast<float>(j) + 0.5F) / (kAcross / 4) - 3.0F,
-                                  -25.0F);
-            const std::string names = objectsAlong(left_, point - left_);
-            ASSERT_LE(names.size(), 3U);
-            for (std::size_t k = 0; k < names.size(); ++k) layers[k].insert(names[k]);
-            const std::string fromRight = objectsAlong(right_, point - right_);
-            if (!fromRight.empty()) firstFromTheRight.insert(fromRight[0]);
-        }
+    for (const auto [j, i] : test::grid(kAcross / 4, kAcross)) {
+        // Points of a plane behind the objects that covers them from both eyes.
+        const glm::vec3 point(40.0F * (static_cast<float>(i) + 0.5F) / kAcross - 20.0F,
+                              16.0F * (static_cast<float>(j) + 0.5F) / (kAcross / 4) - 3.0F,
+                              -25.0F);
+        const std::string names = objectsAlong(left_, point - left_);
+        ASSERT_LE(names.size(), 3U);
+        for (std::size_t k = 0; k < names.size(); ++k) layers[k].insert(names[k]);
+        const std::string fromRight = objectsAlong(right_, point - right_);
+        if (!fromRight.empty()) firstFromTheRight.insert(fromRight[0]);
     }
     EXPECT_EQ(layers[0], (std::set<char>{'A', 'D'}));
     EXPECT_EQ(layers[1], (std::set<char>{'B'}));
@@ -303,20 +297,18 @@ TEST_P(OutdoorWinding, AlmostNoRayMeetsABackFaceFirst) {
         const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
         const glm::vec3 up = glm::cross(right, forward);
         const float slope = 2.0F * std::tan(0.5F * scene.cameras[0].verticalFovRad) / kAcross;
-        for (int j = 0; j < kAcross; ++j) {
-            for (int i = 0; i < kAcross; ++i) {
-                const glm::vec3 direction =
-                    forward + slope * (static_cast<float>(i - kAcross / 2) * right +
-                                       static_cast<float>(j - kAcross / 2) * up);
-                const auto hit = tracer.closestHit(target + turned, direction);
-                if (!hit) continue;
-                ++hits;
-                // Of a sheet with two sides either may be reported: what counts is what is drawn.
-                const auto drawn = tracer.closestHit(target + turned, direction, 0.0F,
-                                                     hit->distance * (1.0F + 1e-5F), Faces::Drawn);
-                backFaces += !drawn.has_value();
-                isAnyDoubleSided |= tracer.triangle(hit->flattenedTriangle).isDoubleSided;
-            }
+        for (const auto [j, i] : test::grid(kAcross, kAcross)) {
+            const glm::vec3 direction =
+                forward + slope * (static_cast<float>(i - kAcross / 2) * right +
+                                   static_cast<float>(j - kAcross / 2) * up);
+            const auto hit = tracer.closestHit(target + turned, direction);
+            if (!hit) continue;
+            ++hits;
+            // Of a sheet with two sides either may be reported: what counts is what is drawn.
+            const auto drawn = tracer.closestHit(target + turned, direction, 0.0F,
+                                                 hit->distance * (1.0F + 1e-5F), Faces::Drawn);
+            backFaces += !drawn.has_value();
+            isAnyDoubleSided |= tracer.triangle(hit->flattenedTriangle).isDoubleSided;
         }
     }
     EXPECT_GT(hits, kAcross * kAcross / 10);

@@ -5,6 +5,7 @@
 #include "engine/core/random.h"
 #include "techniques/clustered_reflections/cluster_images.h"
 #include "techniques/clustered_reflections/visible_triangles.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/clustered_reflections/tracer_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
 
@@ -219,17 +220,15 @@ TEST_F(ClusterImagesTest, DepthsAreNearOverTheDistanceAlongTheAxis) {
     painter.draw(objects, camera, camera.sizePx, images);
     const std::vector<float> depths = depthsOf(images);
     const glm::dmat4 worldFromClip = glm::inverse(glm::dmat4(camera.clipFromWorld));
-    for (int y = 0; y < 30; ++y) {
-        for (int x = 0; x < 40; ++x) {
-            const glm::dvec4 clip((x + 0.5) / 20.0 - 1.0, (y + 0.5) / 15.0 - 1.0, 0.0, 1.0);
-            const glm::dvec4 world = worldFromClip * clip;
-            const glm::vec3 eye(camera.eyeWorld);
-            const glm::vec3 direction = glm::normalize(glm::vec3(world / world.w) - eye);
-            const glm::vec3 hit(reflections::wallHit(rooms::kWalls, eye, direction).position);
-            const float z = glm::dot(hit - eye, glm::vec3(camera.planeNormal));
-            EXPECT_NEAR(depths[static_cast<std::size_t>(y * 64 + x)], 0.25F / z, 1e-4F / z)
-                << x << ' ' << y;
-        }
+    for (const auto [y, x] : test::grid(30, 40)) {
+        const glm::dvec4 clip((x + 0.5) / 20.0 - 1.0, (y + 0.5) / 15.0 - 1.0, 0.0, 1.0);
+        const glm::dvec4 world = worldFromClip * clip;
+        const glm::vec3 eye(camera.eyeWorld);
+        const glm::vec3 direction = glm::normalize(glm::vec3(world / world.w) - eye);
+        const glm::vec3 hit(reflections::wallHit(rooms::kWalls, eye, direction).position);
+        const float z = glm::dot(hit - eye, glm::vec3(camera.planeNormal));
+        EXPECT_NEAR(depths[static_cast<std::size_t>(y * 64 + x)], 0.25F / z, 1e-4F / z)
+            << x << ' ' << y;
     }
 }
 
@@ -296,15 +295,13 @@ TEST_F(ClusterImagesTest, TrianglesThatMayBeSeenShowWhatAllTrianglesShow) {
         const glm::ivec4 place = places[i];
         allTriangles += one.draw(objects, cameras[i], {place.z, place.w}, alone);
         const std::vector<float> depths = depthsOf(alone);
-        for (int y = 0; y < place.w; ++y) {
-            for (int x = 0; x < place.z; ++x) {
-                const float expected = depths[static_cast<std::size_t>(y * 512 + x)];
-                const auto at = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
-                ++texels;
-                drawn += expected > 0.0F;
-                different += std::abs(shown.depths[at] - expected) > 2e-5F;
-                if (shown.depths[at] > 0.0F) ASSERT_LT(shown.triangles[at], triangles);
-            }
+        for (const auto [y, x] : test::grid(place.w, place.z)) {
+            const float expected = depths[static_cast<std::size_t>(y * 512 + x)];
+            const auto at = static_cast<std::size_t>((y + place.y) * 512 + x + place.x);
+            ++texels;
+            drawn += expected > 0.0F;
+            different += std::abs(shown.depths[at] - expected) > 2e-5F;
+            if (shown.depths[at] > 0.0F) ASSERT_LT(shown.triangles[at], triangles);
         }
     }
     EXPECT_GT(shown.state.triangles, 0U);

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "runner/config/experiment.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/clustered_reflections/mirror_rooms.h"
 #include "tests/techniques/clustered_reflections/room.h"
 #include "tests/techniques/reflections/traced_scenes.h"
@@ -257,13 +258,11 @@ TEST_F(ClusteredReflectionsTest, ConvexMirrorsDoNotShowThemselves) {
         SCOPED_TRACE(options);
         const image::ImageF reflection = recorded(options, &scene).images.at("reflection");
         int reflecting = 0, green = 0;
-        for (int y = 0; y < reflection.height(); ++y) {
-            for (int x = 0; x < reflection.width(); ++x) {
-                const glm::vec3 color(reflection.at(x, y, 0), reflection.at(x, y, 1),
-                                      reflection.at(x, y, 2));
-                reflecting += color != glm::vec3(0.0F) ? 1 : 0;
-                green += color.y > 0.05F && color.y > 2.0F * std::max(color.x, color.z) ? 1 : 0;
-            }
+        for (const auto [y, x] : test::grid(reflection.height(), reflection.width())) {
+            const glm::vec3 color(reflection.at(x, y, 0), reflection.at(x, y, 1),
+                                  reflection.at(x, y, 2));
+            reflecting += color != glm::vec3(0.0F) ? 1 : 0;
+            green += color.y > 0.05F && color.y > 2.0F * std::max(color.x, color.z) ? 1 : 0;
         }
         EXPECT_GT(reflecting, 50);
         // The environment map has the column where it is near, for some of the silhouette.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "tests/support/grid.h"
 #include "tests/techniques/clustered_reflections/cluster_fixture.h"
 
 namespace gfxrepro::clustered_reflections {
@@ -23,12 +24,10 @@ scene::Mesh sheet(unsigned cells, const Light& light) {
             mesh.colors.push_back(glm::vec3(light(at)));
         }
     }
-    for (unsigned i = 0; i < cells; ++i) {
-        for (unsigned j = 0; j < cells; ++j) {
-            const unsigned corner = i * (cells + 1) + j, below = corner + cells + 1;
-            mesh.triangles.push_back({corner, below, corner + 1});
-            mesh.triangles.push_back({corner + 1, below, below + 1});
-        }
+    for (const auto [i, j] : test::grid<unsigned>(cells, cells)) {
+        const unsigned corner = i * (cells + 1) + j, below = corner + cells + 1;
+        mesh.triangles.push_back({corner, below, corner + 1});
+        mesh.triangles.push_back({corner + 1, below, below + 1});
     }
     return mesh;
 }

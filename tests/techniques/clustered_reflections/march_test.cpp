@@ -131,6 +131,7 @@ constexpr glm::ivec2 kOriginPx{24, 43};
 
 constexpr const char* kMarchShader = R"(#version 450 core
 #include "clustered_reflections/march.glsl"
+#include "tests/support/grid.h"
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Rays { vec4 rays[]; };
 layout(std430, binding = 1) writeonly buffer Hits { vec4 hits[]; };  // hit, u, along, steps
@@ -270,25 +271,21 @@ struct MarchTest : test::GlTest {
     /// The image within a texture whose other texels are nearer than all: reading one shows.
     static void upload(const Image& image, const gl::Texture& stored, gl::Texture& own) {
         std::vector<float> level(kTextureSidePx * kTextureSidePx, 1e6F), marks = level;
-        for (int y = 0; y < image.sizePx.y; ++y) {
-            for (int x = 0; x < image.sizePx.x; ++x) {
-                const auto from = static_cast<std::size_t>(y * image.sizePx.x + x);
-                const auto to =
-                    static_cast<std::size_t>((y + kOriginPx.y) * kTextureSidePx + x + kOriginPx.x);
-                const float depth = image.depthM[from];
-                level[to] = depth > 0.0F ? image.nearM / depth : 0.0F;
-                marks[to] = image.isOwn[from];
-            }
+        for (const auto [y, x] : test::grid(image.sizePx.y, image.sizePx.x)) {
+            const auto from = static_cast<std::size_t>(y * image.sizePx.x + x);
+            const auto to =
+                static_cast<std::size_t>((y + kOriginPx.y) * kTextureSidePx + x + kOriginPx.x);
+            const float depth = image.depthM[from];
+            level[to] = depth > 0.0F ? image.nearM / depth : 0.0F;
+            marks[to] = image.isOwn[from];
         }
         own.upload(GL_RED, GL_FLOAT, marks.data());
         for (int i = 0, side = kTextureSidePx; i <= kLevels + 1; ++i, side /= 2) {
             glTextureSubImage2D(stored.id(), i, 0, 0, side, side, GL_RED, GL_FLOAT, level.data());
             std::vector<float> next(static_cast<std::size_t>(side * side / 4));
-            for (int y = 0; y < side; ++y) {
-                for (int x = 0; x < side; ++x) {
-                    float& most = next[static_cast<std::size_t>(y / 2 * (side / 2) + x / 2)];
-                    most = std::max(most, level[static_cast<std::size_t>(y * side + x)]);
-                }
+            for (const auto [y, x] : test::grid(side, side)) {
+                float& most = next[static_cast<std::size_t>(y / 2 * (side / 2) + x / 2)];
+                most = std::max(most, level[static_cast<std::size_t>(y * side + x)]);
             }
             level = next;
         }
@@ -422,18 +419,15 @@ TEST(MarchOnHost, ARayThatProjectsToAPointTakesTheTexelThatItLiesIn) {
     Random random(5);
     const Image image = randomImage(random, {97, 61});
     int hits = 0;
-    for (int y = 0; y < 61; ++y) {
-        for (int x = 0; x < 97; ++x) {
-            const glm::vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-            const auto hit = marchOnHost(image, image.at(place, image.nearM * 1.0001F),
-                                         image.at(place, image.nearM + 9.99F));
-            const float stored = image.depthAt(place);
-            ASSERT_EQ(hit.has_value(), stored > 0.0F && stored < image.nearM + 9.98F)
-                << x << ' ' << y;
-            if (!hit) continue;
-            EXPECT_LT(glm::distance(hit->positionPx, place), 0.01F);
-            ++hits;
-        }
+    for (const auto [y, x] : test::grid(61, 97)) {
+        const glm::vec2 place(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+        const auto hit = marchOnHost(image, image.at(place, image.nearM * 1.0001F),
+                                     image.at(place, image.nearM + 9.99F));
+        const float stored = image.depthAt(place);
+        ASSERT_EQ(hit.has_value(), stored > 0.0F && stored < image.nearM + 9.98F) << x << ' ' << y;
+        if (!hit) continue;
+        EXPECT_LT(glm::distance(hit->positionPx, place), 0.01F);
+        ++hits;
     }
     EXPECT_GT(hits, 1000);
 }

@@ -7,6 +7,7 @@
 #include "techniques/depth_sampling/pixel_measures.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/depth_sampling/host_images.h"
 #include "tests/techniques/kit/write_depth_image.h"
 
@@ -87,19 +88,16 @@ struct Expected {
         for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = of.triangleId[i] != 0 ? 1 : 0;
     }
     void mark(HostImages others, bool isRedundant, std::uint32_t among, std::uint32_t bit) {
-        for (int y = 0; y < image.view.sizePx.y; ++y) {
-            for (int x = 0; x < image.view.sizePx.x; ++x) {
-                const std::size_t i = image.indexOf({x, y});
-                if ((marks[i] & 1) == 0) continue;
-                // What hangs on an undecided mark is undecided, too.
-                if (test::isBorderlineWithAny(image, {x, y}, others) ||
-                    (borderline[i] & among) != 0) {
-                    borderline[i] |= bit;
-                }
-                if ((marks[i] & among) == among &&
-                    test::isRedundantWithAny(image, {x, y}, others) == isRedundant) {
-                    marks[i] |= bit;
-                }
+        for (const auto [y, x] : test::grid(image.view.sizePx.y, image.view.sizePx.x)) {
+            const std::size_t i = image.indexOf({x, y});
+            if ((marks[i] & 1) == 0) continue;
+            // What hangs on an undecided mark is undecided, too.
+            if (test::isBorderlineWithAny(image, {x, y}, others) || (borderline[i] & among) != 0) {
+                borderline[i] |= bit;
+            }
+            if ((marks[i] & among) == among &&
+                test::isRedundantWithAny(image, {x, y}, others) == isRedundant) {
+                marks[i] |= bit;
             }
         }
     }
@@ -265,11 +263,9 @@ TEST_F(PixelMeasuresTest, ImagesMayDifferInSize) {
     // Three times finer: the centre of pixel p lands at the centre of pixel 3p + 1.
     auto fine = test::emptyImage(test::viewFrom({0, 0, 1}, {36, 27}));
     auto others = test::filledImage(fine.view, 2.0F, 7);
-    for (int y = 0; y < 9; ++y) {
-        for (int x = 0; x < 12; ++x) {
-            fine.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 7;
-            others.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 8;
-        }
+    for (const auto [y, x] : test::grid(9, 12)) {
+        fine.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 7;
+        others.triangleId[fine.indexOf({3 * x + 1, 3 * y + 1})] = 8;
     }
     EXPECT_EQ(redundantCount(image, {&fine, 1}), 12U * 9U);
     EXPECT_EQ(redundantCount(image, {&others, 1}), 0U);

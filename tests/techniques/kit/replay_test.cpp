@@ -5,6 +5,7 @@
 
 #include "engine/raycast/ray_tracer.h"
 #include "techniques/kit/depth_image.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 
 namespace gfxrepro::kit {
@@ -183,9 +184,7 @@ constexpr int kReplaySizePx = 96;
 struct ReplayTest : DepthImageTest {
     static std::vector<glm::ivec2> pixels() {
         std::vector<glm::ivec2> all;
-        for (int y = 0; y < kReplaySizePx; ++y) {
-            for (int x = 0; x < kReplaySizePx; ++x) all.emplace_back(x, y);
-        }
+        for (const auto [y, x] : test::grid(kReplaySizePx, kReplaySizePx)) all.emplace_back(x, y);
         return all;
     }
 

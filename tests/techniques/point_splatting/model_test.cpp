@@ -13,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/core/random.h"
 #include "techniques/point_splatting/point_splatting.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 #include "tests/techniques/point_splatting/point_clouds.h"
 
@@ -21,9 +22,7 @@ namespace {
 
 scene::PointCloud plane(int side) {
     scene::PointCloud points;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) points.positions.emplace_back(x, 0, y);
-    }
+    for (const auto [y, x] : test::grid(side, side)) points.positions.emplace_back(x, 0, y);
     points.normals.assign(points.positions.size(), {0, 1, 0});
     points.radii.assign(points.positions.size(), 0.75F);
     return points;

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "scenes/shared/mesh_builder.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/point_splatting/point_clouds.h"
 #include "tests/techniques/technique_fixture.h"
 
@@ -35,16 +36,14 @@ struct PointSplattingTest : test::TechniqueTest {
 std::pair<int, float> difference(const image::ImageF& a, const image::ImageF& b) {
     int pixels = 0;
     float most = 0.0F;
-    for (int y = 0; y < a.height(); ++y) {
-        for (int x = 0; x < a.width(); ++x) {
-            bool differs = false;
-            for (int c = 0; c < a.channels(); ++c) {
-                const float d = std::abs(a.at(x, y, c) - b.at(x, y, c));
-                differs = differs || d > 0.0F;
-                most = std::max(most, d);
-            }
-            pixels += differs ? 1 : 0;
+    for (const auto [y, x] : test::grid(a.height(), a.width())) {
+        bool differs = false;
+        for (int c = 0; c < a.channels(); ++c) {
+            const float d = std::abs(a.at(x, y, c) - b.at(x, y, c));
+            differs = differs || d > 0.0F;
+            most = std::max(most, d);
         }
+        pixels += differs ? 1 : 0;
     }
     return {pixels, most};
 }
@@ -203,13 +202,11 @@ TEST_F(PointSplattingTest, ModesArePictured) {
         const image::ImageF& image = recorder.images.at("image");
         std::array<int, 3> most{};
         int covered = 0;
-        for (int y = 0; y < modes.height(); ++y) {
-            for (int x = 0; x < modes.width(); ++x) {
-                const float* begin = &modes.at(x, y, 0);
-                covered += image.at(x, y, 0) > 0.0F ? 1 : 0;
-                if (*std::max_element(begin, begin + 3) <= 0.05F) continue;
-                ++most[static_cast<std::size_t>(std::max_element(begin, begin + 3) - begin)];
-            }
+        for (const auto [y, x] : test::grid(modes.height(), modes.width())) {
+            const float* begin = &modes.at(x, y, 0);
+            covered += image.at(x, y, 0) > 0.0F ? 1 : 0;
+            if (*std::max_element(begin, begin + 3) <= 0.05F) continue;
+            ++most[static_cast<std::size_t>(std::max_element(begin, begin + 3) - begin)];
         }
         EXPECT_NEAR(most[0] + most[1] + most[2], covered, 0.1 * covered);
         return most;  // full EWA is red, the low-pass green, reconstruction blue

@@ -11,6 +11,7 @@
 #include "techniques/point_splatting/plain_points.h"
 #include "techniques/point_splatting/splat_renderer.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/point_splatting/point_clouds.h"
 
 namespace gfxrepro::point_splatting {
@@ -36,15 +37,13 @@ inline scene::PointCloud sheet(int n, float half, float z, float turnRad,
     scene::PointCloud points;
     const glm::vec3 along(std::cos(turnRad), 0.0F, -std::sin(turnRad));
     const float spacing = 2.0F * half / static_cast<float>(n);
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-            const float u = (static_cast<float>(x) + 0.5F) * spacing - half;
-            const float v = (static_cast<float>(y) + 0.5F) * spacing - half;
-            points.positions.push_back(u * along + glm::vec3(0.0F, v, z));
-            points.normals.emplace_back(std::sin(turnRad), 0.0F, std::cos(turnRad));
-            points.radii.push_back(0.85F * spacing);
-            points.colors.push_back(color);
-        }
+    for (const auto [y, x] : test::grid(n, n)) {
+        const float u = (static_cast<float>(x) + 0.5F) * spacing - half;
+        const float v = (static_cast<float>(y) + 0.5F) * spacing - half;
+        points.positions.push_back(u * along + glm::vec3(0.0F, v, z));
+        points.normals.emplace_back(std::sin(turnRad), 0.0F, std::cos(turnRad));
+        points.radii.push_back(0.85F * spacing);
+        points.colors.push_back(color);
     }
     return points;
 }

@@ -6,6 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
+#include "tests/support/grid.h"
 #include "tests/techniques/point_splatting/splat_fixture.h"
 #include "tests/techniques/point_splatting/splat_math.h"
 
@@ -29,22 +30,20 @@ void expectSheet(const Picture& picture, const PatchView& view, double distance,
     const glm::dvec3 normal(std::sin(turnRad), 0.0, std::cos(turnRad));
     const glm::dvec3 along(std::cos(turnRad), 0.0, -std::sin(turnRad));
     int inside = 0;
-    for (int y = 0; y < view.sizePx.y; ++y) {
-        for (int x = 0; x < view.sizePx.x; ++x) {
-            const glm::dvec3 ray = rayOf(view, x, y), eye(0.0, 0.0, distance);
-            const glm::dvec3 hit = eye - glm::dot(normal, eye) / glm::dot(normal, ray) * ray;
-            if (std::abs(glm::dot(hit, along)) > 0.95 * half || std::abs(hit.y) > 0.95 * half) {
-                continue;
-            }
-            ++inside;
-            const glm::dvec3 expected =
-                shadedReference(color, normal, -glm::normalize(ray), glm::dvec3(kLight));
-            const glm::ivec4 found = picture.at(x, y);
-            ASSERT_EQ(found.a, 255) << x << ", " << y;
-            for (int c = 0; c < 3; ++c) {
-                // One step, and half a step of rounding.
-                ASSERT_NEAR(found[c], expected[c], 1.5) << x << ", " << y << " of " << c;
-            }
+    for (const auto [y, x] : test::grid(view.sizePx.y, view.sizePx.x)) {
+        const glm::dvec3 ray = rayOf(view, x, y), eye(0.0, 0.0, distance);
+        const glm::dvec3 hit = eye - glm::dot(normal, eye) / glm::dot(normal, ray) * ray;
+        if (std::abs(glm::dot(hit, along)) > 0.95 * half || std::abs(hit.y) > 0.95 * half) {
+            continue;
+        }
+        ++inside;
+        const glm::dvec3 expected =
+            shadedReference(color, normal, -glm::normalize(ray), glm::dvec3(kLight));
+        const glm::ivec4 found = picture.at(x, y);
+        ASSERT_EQ(found.a, 255) << x << ", " << y;
+        for (int c = 0; c < 3; ++c) {
+            // One step, and half a step of rounding.
+            ASSERT_NEAR(found[c], expected[c], 1.5) << x << ", " << y << " of " << c;
         }
     }
     EXPECT_GT(inside, 1500);
@@ -126,15 +125,13 @@ TEST_F(SplatTest, OutlinesOfFullEwaAreCoveredByTheirShare) {
                             std::sqrt(static_cast<double>(kDistance * kDistance) - 1.0);
     double covered = 0.0;
     int partly = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            const double alpha = picture.at(x, y).a / 255.0;
-            covered += alpha;
-            partly += alpha > 0.05 && alpha < 0.95 ? 1 : 0;
-            const double beyond = glm::length(glm::dvec2(x + 0.5, y + 0.5) - 48.0) - radiusPx;
-            if (beyond < -1.5) ASSERT_EQ(picture.at(x, y).a, 255) << x << ", " << y;
-            if (beyond > 1.5) ASSERT_EQ(picture.at(x, y).a, 0) << x << ", " << y;
-        }
+    for (const auto [y, x] : test::grid(kSize.y, kSize.x)) {
+        const double alpha = picture.at(x, y).a / 255.0;
+        covered += alpha;
+        partly += alpha > 0.05 && alpha < 0.95 ? 1 : 0;
+        const double beyond = glm::length(glm::dvec2(x + 0.5, y + 0.5) - 48.0) - radiusPx;
+        if (beyond < -1.5) ASSERT_EQ(picture.at(x, y).a, 255) << x << ", " << y;
+        if (beyond > 1.5) ASSERT_EQ(picture.at(x, y).a, 0) << x << ", " << y;
     }
     // A quarter pixel off all around at the most: where splats end it would be ¾ more.
     EXPECT_NEAR(covered, glm::pi<double>() * radiusPx * radiusPx,
@@ -273,22 +270,20 @@ TEST_F(SplatTest, DiscsLieWhereViewRaysMeetThem) {
         const glm::dvec3 eye(0.0, 0.0, 3.0), normal(c.normal),
             toCentre = glm::dvec3(c.position) - eye;
         int hits = 0;
-        for (int y = 0; y < kSize.y; ++y) {
-            for (int x = 0; x < kSize.x; ++x) {
-                const glm::dvec3 ray = rayOf(view, x, y);
-                const double t = glm::dot(normal, toCentre) / glm::dot(normal, ray);
-                const double away = glm::length(t * ray - toCentre) / static_cast<double>(c.radius);
-                // A hundredth of a radius about the edge is left to rounding.
-                if (std::abs(away - kCutoff) < 0.01) continue;
-                const bool isHit = t > 0.0 && away < kCutoff;
-                hits += isHit ? 1 : 0;
-                const double expected = isHit ? std::exp(-0.5 * away * away) : 0.0;
-                // Half floats have 2⁻¹¹ of a value up to 1.
-                ASSERT_NEAR(
-                    static_cast<double>(sums[static_cast<std::size_t>(4 * (y * kSize.x + x) + 3)]),
-                    expected, 0.001)
-                    << x << ", " << y;
-            }
+        for (const auto [y, x] : test::grid(kSize.y, kSize.x)) {
+            const glm::dvec3 ray = rayOf(view, x, y);
+            const double t = glm::dot(normal, toCentre) / glm::dot(normal, ray);
+            const double away = glm::length(t * ray - toCentre) / static_cast<double>(c.radius);
+            // A hundredth of a radius about the edge is left to rounding.
+            if (std::abs(away - kCutoff) < 0.01) continue;
+            const bool isHit = t > 0.0 && away < kCutoff;
+            hits += isHit ? 1 : 0;
+            const double expected = isHit ? std::exp(-0.5 * away * away) : 0.0;
+            // Half floats have 2⁻¹¹ of a value up to 1.
+            ASSERT_NEAR(
+                static_cast<double>(sums[static_cast<std::size_t>(4 * (y * kSize.x + x) + 3)]),
+                expected, 0.001)
+                << x << ", " << y;
         }
         EXPECT_GT(hits, 15);
     }
@@ -314,16 +309,14 @@ TEST_F(SplatTest, DiscsAreTheEllipsesOfEquation8ToFirstOrder) {
     const glm::dvec2 centre =
         256.0 + focal * glm::dvec2(splat.centre.x, splat.centre.y) / splat.centre.z;
     int compared = 0;
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            const glm::dvec2 away = glm::dvec2(x + 0.5, y + 0.5) - centre;
-            const double distance2 = glm::dot(away, glm::inverse(h) * away);
-            if (distance2 > 3.8) continue;
-            ++compared;
-            // Over the disc depths differ by 2 % of the distance, which bends the exponent as much.
-            ASSERT_NEAR(static_cast<double>(sums[static_cast<std::size_t>(4 * (y * 512 + x) + 3)]),
-                        std::exp(-0.5 * distance2), 0.04);
-        }
+    for (const auto [y, x] : test::grid(512, 512)) {
+        const glm::dvec2 away = glm::dvec2(x + 0.5, y + 0.5) - centre;
+        const double distance2 = glm::dot(away, glm::inverse(h) * away);
+        if (distance2 > 3.8) continue;
+        ++compared;
+        // Over the disc depths differ by 2 % of the distance, which bends the exponent as much.
+        ASSERT_NEAR(static_cast<double>(sums[static_cast<std::size_t>(4 * (y * 512 + x) + 3)]),
+                    std::exp(-0.5 * distance2), 0.04);
     }
     EXPECT_GT(compared, 300);
 }

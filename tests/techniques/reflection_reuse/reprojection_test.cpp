@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/traced_scenes.h"
 
@@ -22,9 +23,7 @@ bool isInside(int x, int y) {
 }
 template <class Action>
 void forEachPixel(Action&& action) {
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) action(x, y);
-    }
+    for (const auto [y, x] : test::grid(kSize.y, kSize.x)) action(x, y);
 }
 
 /// Texels of a key frame; one mirror over the whole image, every colour another one.

@@ -1,6 +1,7 @@
 // Algorithm 8 in a room with mirrors, against rays traced from every sample.
 #include "techniques/reflection_reuse/reuse_renderer.h"
 #include "techniques/reflection_reuse/reprojection.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflection_reuse/key_frame.h"
 #include "tests/techniques/reflection_reuse/mirror_room.h"
 #include "tests/techniques/reflections/gl_calls.h"
@@ -301,10 +302,8 @@ struct GatherTest : KeyFrameTest {
         key.emplace(shaders, source, camera, kGatherSizePx);
         const glm::vec2 middle = 0.5F * glm::vec2(kGatherSizePx);
         std::vector<glm::vec4> places;
-        for (int y = 0; y < kGatherSizePx.y; ++y) {
-            for (int x = 0; x < kGatherSizePx.x; ++x) {
-                places.emplace_back(glm::vec2(x, y) + 0.5F - middle, 0, 1);
-            }
+        for (const auto [y, x] : test::grid(kGatherSizePx.y, kGatherSizePx.x)) {
+            places.emplace_back(glm::vec2(x, y) + 0.5F - middle, 0, 1);
         }
         key->image.reflection.radiance.upload(GL_RGBA, GL_FLOAT, places.data());
         scene::Camera moved = camera;

@@ -5,6 +5,7 @@
 
 #include "engine/image/srgb.h"
 #include "engine/raycast/ray_tracer.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/gl_calls.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
@@ -143,19 +144,17 @@ TEST_F(GBufferTest, IsReadTheSameOnTheDevice) {
     results[4 * i + 3] = vec4(gbufferDiffuseAt(pixel), 1.0);)");
     const HostGBuffer host = readGBuffer(gbuffer);
     const auto results = computed(read, kBufferSize, 4, gbuffer.resourcesFor(read));
-    for (int y = 0; y < kBufferSize.y; ++y) {
-        for (int x = 0; x < kBufferSize.x; ++x) {
-            const std::size_t i = host.indexOf({x, y});
-            if (host.depthM[i] == 0.0F) continue;
-            const glm::vec4* found = &results[4 * i];
-            ASSERT_LE(glm::distance(glm::vec3(found[0]), host.positionWorld({x, y})), 1e-5F);
-            ASSERT_EQ(found[0].w, static_cast<float>(host.reflector(i)));
-            ASSERT_LE(glm::distance(glm::vec3(found[1]), host.normalWorld[i]), 1e-6F);
-            ASSERT_NEAR(found[1].w, reflectivityOf(host, i), 1e-7F);
-            ASSERT_LE(glm::distance(glm::vec3(found[2]), host.mirrorDirection({x, y})), 2e-6F);
-            ASSERT_NEAR(found[2].w, host.glossiness(i), 1e-7F);
-            ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
-        }
+    for (const auto [y, x] : test::grid(kBufferSize.y, kBufferSize.x)) {
+        const std::size_t i = host.indexOf({x, y});
+        if (host.depthM[i] == 0.0F) continue;
+        const glm::vec4* found = &results[4 * i];
+        ASSERT_LE(glm::distance(glm::vec3(found[0]), host.positionWorld({x, y})), 1e-5F);
+        ASSERT_EQ(found[0].w, static_cast<float>(host.reflector(i)));
+        ASSERT_LE(glm::distance(glm::vec3(found[1]), host.normalWorld[i]), 1e-6F);
+        ASSERT_NEAR(found[1].w, reflectivityOf(host, i), 1e-7F);
+        ASSERT_LE(glm::distance(glm::vec3(found[2]), host.mirrorDirection({x, y})), 2e-6F);
+        ASSERT_NEAR(found[2].w, host.glossiness(i), 1e-7F);
+        ASSERT_EQ(glm::vec3(found[3]), host.diffuse[i]);
     }
 }
 

@@ -31,6 +31,7 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
 constexpr const char* kTraceShader = R"(#version 450 core
 #include "reflections/bvh.glsl"
+#include "tests/support/grid.h"
 layout(local_size_x = 64) in;
 struct Ray { vec3 origin; float tMin; vec3 direction; float tMax; };
 struct Hit { float t; uint triangle; vec2 barycentric; };
@@ -282,9 +283,7 @@ TEST_F(GpuBvhTest, PassesThroughTrianglesWithoutArea) {
 // flat box of a node may make them slip.
 TEST_F(GpuBvhTest, LeavesNoGapBetweenTriangles) {
     scene::MeshBuilder builder;
-    for (int x = 0; x < 4; ++x) {
-        for (int z = 0; z < 4; ++z) builder.addBox(glm::vec3(x, 0, z), glm::vec3(0.5F));
-    }
+    for (const auto [x, z] : test::grid(4, 4)) builder.addBox(glm::vec3(x, 0, z), glm::vec3(0.5F));
     pose(scene::sceneOf(builder.take("boxes", -1)));
     std::vector<Ray> rays;
     const auto step = [&] { return 0.5F * static_cast<float>(random_.index(9)) - 0.5F; };

@@ -14,6 +14,7 @@
 #include "techniques/reflections/gbuffer.h"
 #include "techniques/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::reflections {
 
@@ -62,12 +63,10 @@ inline scene::Mesh dome(const glm::vec3& centre, float radius, float polarRad, u
             mesh.normals.push_back(up);
         }
     }
-    for (unsigned j = 0; j < down; ++j) {
-        for (unsigned i = 0; i < around; ++i) {
-            const unsigned a = j * (around + 1) + i, b = a + around + 1;
-            mesh.triangles.emplace_back(a, b + 1, b);
-            mesh.triangles.emplace_back(a, a + 1, b + 1);
-        }
+    for (const auto [j, i] : test::grid<unsigned>(down, around)) {
+        const unsigned a = j * (around + 1) + i, b = a + around + 1;
+        mesh.triangles.emplace_back(a, b + 1, b);
+        mesh.triangles.emplace_back(a, a + 1, b + 1);
     }
     return mesh;
 }
@@ -114,11 +113,9 @@ inline image::Image8 randomImage(int width, int height, std::uint64_t seed) {
 template <class Color>
 image::Image8 imageOf(const Color& color) {
     image::Image8 image(512, 512, 3);
-    for (int y = 0; y < 512; ++y) {
-        for (int x = 0; x < 512; ++x) {
-            const glm::u8vec3 texel(color(x, y));
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = texel[c];
-        }
+    for (const auto [y, x] : test::grid(512, 512)) {
+        const glm::u8vec3 texel(color(x, y));
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = texel[c];
     }
     return image;
 }
@@ -134,13 +131,11 @@ inline gl::Texture maskTexture(const std::vector<std::uint8_t>& values, glm::ive
 template <class Action>
 int forEachReflective(const HostGBuffer& gbuffer, Action&& action) {
     int count = 0;
-    for (int y = 0; y < gbuffer.view.sizePx.y; ++y) {
-        for (int x = 0; x < gbuffer.view.sizePx.x; ++x) {
-            const std::size_t index = gbuffer.indexOf({x, y});
-            if (!gbuffer.isReflective(index)) continue;
-            action(glm::ivec2(x, y), index);
-            ++count;
-        }
+    for (const auto [y, x] : test::grid(gbuffer.view.sizePx.y, gbuffer.view.sizePx.x)) {
+        const std::size_t index = gbuffer.indexOf({x, y});
+        if (!gbuffer.isReflective(index)) continue;
+        action(glm::ivec2(x, y), index);
+        ++count;
     }
     return count;
 }

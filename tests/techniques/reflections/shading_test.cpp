@@ -3,6 +3,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "techniques/reflections/frame.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -181,22 +182,18 @@ struct CompositeTest : ReflectionsTest {
     glm::vec3 expected(const HostGBuffer& host, glm::ivec2 pixel, int supersampling, Blend blend,
                        bool showsReflectionOnly) const {
         glm::vec3 sum(0.0F);
-        for (int dy = 0; dy < supersampling; ++dy) {
-            for (int dx = 0; dx < supersampling; ++dx) {
-                const glm::ivec2 at = pixel * supersampling + glm::ivec2(dx, dy);
-                const auto i =
-                    static_cast<std::size_t>(at.y * kOutputSize.x * supersampling + at.x);
-                const glm::vec3 own = showsReflectionOnly ? glm::vec3(0) : host.diffuse[i];
-                float s = static_cast<float>(surface[i] >> 16 & 0xFFU) / 255.0F;
-                if (blend == Blend::Fresnel) {
-                    const glm::vec3 toEye =
-                        glm::normalize(host.view.eyeWorld - host.positionWorld(at));
-                    const float cosine = std::max(glm::dot(toEye, host.normalWorld[i]), 0.0F);
-                    s += (1.0F - s) * std::pow(1.0F - cosine, 5.0F);
-                }
-                if (showsReflectionOnly) s = 1.0F;
-                sum += surface[i] == 0 ? own : (1.0F - s) * own + s * glm::vec3(reflected[i]);
+        for (const auto [dy, dx] : test::grid(supersampling, supersampling)) {
+            const glm::ivec2 at = pixel * supersampling + glm::ivec2(dx, dy);
+            const auto i = static_cast<std::size_t>(at.y * kOutputSize.x * supersampling + at.x);
+            const glm::vec3 own = showsReflectionOnly ? glm::vec3(0) : host.diffuse[i];
+            float s = static_cast<float>(surface[i] >> 16 & 0xFFU) / 255.0F;
+            if (blend == Blend::Fresnel) {
+                const glm::vec3 toEye = glm::normalize(host.view.eyeWorld - host.positionWorld(at));
+                const float cosine = std::max(glm::dot(toEye, host.normalWorld[i]), 0.0F);
+                s += (1.0F - s) * std::pow(1.0F - cosine, 5.0F);
             }
+            if (showsReflectionOnly) s = 1.0F;
+            sum += surface[i] == 0 ? own : (1.0F - s) * own + s * glm::vec3(reflected[i]);
         }
         return sum / static_cast<float>(supersampling * supersampling);
     }
@@ -207,15 +204,13 @@ struct CompositeTest : ReflectionsTest {
         composite.render(*gbuffer, *target, showsReflectionOnly);
         const image::ImageF image = composite.read();
         ASSERT_EQ(image.channels(), 3);
-        for (int y = 0; y < kOutputSize.y; ++y) {
-            for (int x = 0; x < kOutputSize.x; ++x) {
-                const glm::vec3 colour =
-                    expected(host, {x, y}, supersampling, blend, showsReflectionOnly);
-                for (int c = 0; c < 3; ++c) {
-                    // 10 bits of the diffuse colour, 11 of each half-precision number.
-                    EXPECT_NEAR(image.at(x, kOutputSize.y - 1 - y, c), colour[c], 2e-3F)
-                        << supersampling << " " << x << " " << y << " " << c;
-                }
+        for (const auto [y, x] : test::grid(kOutputSize.y, kOutputSize.x)) {
+            const glm::vec3 colour =
+                expected(host, {x, y}, supersampling, blend, showsReflectionOnly);
+            for (int c = 0; c < 3; ++c) {
+                // 10 bits of the diffuse colour, 11 of each half-precision number.
+                EXPECT_NEAR(image.at(x, kOutputSize.y - 1 - y, c), colour[c], 2e-3F)
+                    << supersampling << " " << x << " " << y << " " << c;
             }
         }
     }

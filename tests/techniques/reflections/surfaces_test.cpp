@@ -8,6 +8,7 @@
 
 #include "engine/image/srgb.h"
 #include "techniques/reflections/frame.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -276,9 +277,7 @@ TEST(ReflectiveSceneTest, ReadsTexturesBeyondTheirEdgesAsTheFileSays) {
     scene::Scene scene =
         sceneOf(squareMesh(), {.baseColor = glm::vec4(1.0F), .baseColorTexture = 0});
     image::Image8 columns(512, 512, 3);  // the left quarter is white
-    for (int y = 0; y < 512; ++y) {
-        for (int i = 0; i < 3 * 128; ++i) columns.at(i / 3, y, i % 3) = 255;
-    }
+    for (const auto [y, i] : test::grid(512, 3 * 128)) columns.at(i / 3, y, i % 3) = 255;
     scene.textures = {columns};
     scene.meshes[0].texcoords = {{-1, 0.5F}, {2, 0.5F}, {2, 0.5F}, {-1, 0.5F}};
     const auto at = [&](const scene::Sampling& sampling, float u) {

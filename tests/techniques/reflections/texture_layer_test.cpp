@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/image/srgb.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -41,9 +42,7 @@ TEST(TextureLayerTest, AveragesInLinearLight) {
     const image::Image8 layer = textureLayer(image, 2);
     // Each is 1 part black, ½ part white: a linear third, 156 in sRGB (85 if encoded values were
     // averaged).
-    for (int y = 0; y < 2; ++y) {
-        for (int x = 0; x < 2; ++x) EXPECT_EQ(layer.at(x, y, 0), 156) << x << " " << y;
-    }
+    for (const auto [y, x] : test::grid(2, 2)) EXPECT_EQ(layer.at(x, y, 0), 156) << x << " " << y;
 }
 
 TEST(TextureLayerTest, HalvesInLinearLight) {
@@ -65,9 +64,8 @@ TEST(TextureLayerTest, KeepsTheMeanOfSizesThatDoNotDivide) {
     const std::array<float, 256> decoding = image::srgbDecoding();
     const auto meanOf = [&](const image::Image8& image) {
         double sum = 0.0;
-        for (int y = 0; y < image.height(); ++y) {
-            for (int x = 0; x < image.width(); ++x) sum += decoding[image.at(x, y, 0)];
-        }
+        for (const auto [y, x] : test::grid(image.height(), image.width()))
+            sum += decoding[image.at(x, y, 0)];
         return sum / (image.width() * image.height());
     };
     for (const int size : {3, 7, 33, 64}) {
@@ -89,10 +87,8 @@ TEST(TextureLayerTest, AveragesValuesAsTheyAre) {
 TEST(TextureLayerTest, EnlargesToBlocks) {
     const image::Image8 image = pattern(2, 2, 3);
     const image::Image8 layer = textureLayer(image, 8);
-    for (int y = 0; y < 8; ++y) {
-        for (int x = 0; x < 8; ++x) {
-            ASSERT_EQ(layer.at(x, y, 2), image.at(x / 4, y / 4, 2)) << x << " " << y;
-        }
+    for (const auto [y, x] : test::grid(8, 8)) {
+        ASSERT_EQ(layer.at(x, y, 2), image.at(x / 4, y / 4, 2)) << x << " " << y;
     }
 }
 

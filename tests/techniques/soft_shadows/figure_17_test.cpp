@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "tests/support/grid.h"
 #include "tests/techniques/soft_shadows/reconstruction_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
 
@@ -57,14 +58,12 @@ struct Figure17Test : ReconstructionTest {
         const auto imageWithOffset = [&](float offsetPx) {
             HostDepthImage image =
                 emptyImage(viewOf(originCamera(), glm::ivec2(kSizePx), glm::vec2(offsetPx)));
-            for (int y = 0; y < kSizePx; ++y) {
-                for (int x = 0; x < kSizePx; ++x) {
-                    const glm::vec2 p = glm::vec2(x, y) + 0.5F + offsetPx;
-                    const Ellipse* e = ellipseAt(p);
-                    if (!e) continue;
-                    image.depthM[image.indexOf({x, y})] = e->depthAt(view, p);
-                    image.triangleId[image.indexOf({x, y})] = e->idAt(p);
-                }
+            for (const auto [y, x] : test::grid(kSizePx, kSizePx)) {
+                const glm::vec2 p = glm::vec2(x, y) + 0.5F + offsetPx;
+                const Ellipse* e = ellipseAt(p);
+                if (!e) continue;
+                image.depthM[image.indexOf({x, y})] = e->depthAt(view, p);
+                image.triangleId[image.indexOf({x, y})] = e->idAt(p);
             }
             return image;
         };
@@ -96,18 +95,16 @@ TEST_F(Figure17Test, EveryCornerLiesOnItsSamplesEllipse) {
     // Whether from H or from the plane: the ellipses are flat.
     std::size_t fitted = 0, samples = 0;
     std::set<unsigned> shared;
-    for (int y = 0; y < kSizePx; ++y) {
-        for (int x = 0; x < kSizePx; ++x) {
-            const Ellipse* e = ellipseAt(glm::vec2(x, y) + 0.5F);
-            if (!e) continue;
-            ++samples;
-            const auto vertices = verticesOf(x, y);
-            for (std::size_t k = 0; k < 4; ++k) {
-                const glm::vec2 corner(glm::ivec2(x, y) + kCorners[k]);
-                EXPECT_NEAR(depthOf(vertices[k]), e->depthAt(view, corner), 1e-4F);
-                if (ellipseAt(corner) == e) shared.insert(vertices[k]);
-                fitted += ellipseAt(corner) == e ? 0 : 1;
-            }
+    for (const auto [y, x] : test::grid(kSizePx, kSizePx)) {
+        const Ellipse* e = ellipseAt(glm::vec2(x, y) + 0.5F);
+        if (!e) continue;
+        ++samples;
+        const auto vertices = verticesOf(x, y);
+        for (std::size_t k = 0; k < 4; ++k) {
+            const glm::vec2 corner(glm::ivec2(x, y) + kCorners[k]);
+            EXPECT_NEAR(depthOf(vertices[k]), e->depthAt(view, corner), 1e-4F);
+            if (ellipseAt(corner) == e) shared.insert(vertices[k]);
+            fitted += ellipseAt(corner) == e ? 0 : 1;
         }
     }
     EXPECT_EQ(mesh.mesh.sampleCount, samples);
@@ -185,15 +182,12 @@ constexpr ReconstructionSettings kTinyImage{.method = Reconstruction::Classic,
 ImagePair imagesOf(const std::vector<std::string>& rows, const std::vector<float>& depths) {
     const glm::ivec2 size(static_cast<int>(rows.front().size()), static_cast<int>(rows.size()));
     ImagePair images = emptyPair(size);
-    for (int y = 0; y < size.y; ++y) {
-        for (int x = 0; x < size.x; ++x) {
-            const char c =
-                rows[static_cast<std::size_t>(size.y - 1 - y)][static_cast<std::size_t>(x)];
-            if (c == '.') continue;
-            const std::size_t at = images.image.indexOf({x, y});
-            images.image.triangleId[at] = static_cast<std::uint32_t>(c - '0');
-            images.image.depthM[at] = depths[static_cast<std::size_t>(c - '0')];
-        }
+    for (const auto [y, x] : test::grid(size.y, size.x)) {
+        const char c = rows[static_cast<std::size_t>(size.y - 1 - y)][static_cast<std::size_t>(x)];
+        if (c == '.') continue;
+        const std::size_t at = images.image.indexOf({x, y});
+        images.image.triangleId[at] = static_cast<std::uint32_t>(c - '0');
+        images.image.depthM[at] = depths[static_cast<std::size_t>(c - '0')];
     }
     return images;
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/raycast/ray_tracer.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/soft_shadows/reconstruction_fixture.h"
 
 namespace gfxrepro::soft_shadows {
@@ -29,16 +30,14 @@ glm::dvec3 forwardOf(const View& view) {
 
 HostDepthImage traceImage(const raycast::RayTracer& tracer, const View& view) {
     HostDepthImage image = emptyImage(view);
-    for (int y = 0; y < view.sizePx.y; ++y) {
-        for (int x = 0; x < view.sizePx.x; ++x) {
-            const glm::vec3 ray = rayThrough(view, glm::vec2(x, y) + 0.5F);
-            const auto hit = tracer.closestHit(view.eyeWorld, ray);
-            if (!hit) continue;
-            const std::size_t at = image.indexOf({x, y});
-            image.depthM[at] =
-                hit->distance * static_cast<float>(glm::dot(glm::dvec3(ray), forwardOf(view)));
-            image.triangleId[at] = hit->triangle + 1;
-        }
+    for (const auto [y, x] : test::grid(view.sizePx.y, view.sizePx.x)) {
+        const glm::vec3 ray = rayThrough(view, glm::vec2(x, y) + 0.5F);
+        const auto hit = tracer.closestHit(view.eyeWorld, ray);
+        if (!hit) continue;
+        const std::size_t at = image.indexOf({x, y});
+        image.depthM[at] =
+            hit->distance * static_cast<float>(glm::dot(glm::dvec3(ray), forwardOf(view)));
+        image.triangleId[at] = hit->triangle + 1;
     }
     return image;
 }
@@ -104,33 +103,31 @@ std::vector<Quad> hybridQuads(const HostDepthImage& image, const HostDepthImage&
                               const ReconstructionSettings& settings) {
     constexpr glm::ivec2 kCorners[4] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     std::vector<Quad> quads;
-    for (int y = 0; y < image.view.sizePx.y; ++y) {
-        for (int x = 0; x < image.view.sizePx.x; ++x) {
-            const glm::ivec2 pixel(x, y);
-            const std::uint32_t id = idAt(image, pixel);
-            if (id == 0) continue;
-            const double sampleDepth = image.depthM[image.indexOf(pixel)];
-            const double footprint = footprintM(image.view, sampleDepth);
-            Quad quad{pixel, {}};
-            for (std::size_t k = 0; k < 4; ++k) {
-                const glm::ivec2 position = pixel + kCorners[k];
-                const auto plane = depthOnPlane(image, pixel, normals, position);
-                const std::uint32_t sharedId = idAt(offset, position);
-                if (sharedId != 0) {
-                    const double shared = offset.depthM[offset.indexOf(position)];
-                    if (sharedId == id || (plane && std::abs(shared - *plane) <=
-                                                        settings.discontinuityPx * footprint)) {
-                        quad.corners[k] = {position, shared, true};
-                        continue;
-                    }
+    for (const auto [y, x] : test::grid(image.view.sizePx.y, image.view.sizePx.x)) {
+        const glm::ivec2 pixel(x, y);
+        const std::uint32_t id = idAt(image, pixel);
+        if (id == 0) continue;
+        const double sampleDepth = image.depthM[image.indexOf(pixel)];
+        const double footprint = footprintM(image.view, sampleDepth);
+        Quad quad{pixel, {}};
+        for (std::size_t k = 0; k < 4; ++k) {
+            const glm::ivec2 position = pixel + kCorners[k];
+            const auto plane = depthOnPlane(image, pixel, normals, position);
+            const std::uint32_t sharedId = idAt(offset, position);
+            if (sharedId != 0) {
+                const double shared = offset.depthM[offset.indexOf(position)];
+                if (sharedId == id ||
+                    (plane && std::abs(shared - *plane) <= settings.discontinuityPx * footprint)) {
+                    quad.corners[k] = {position, shared, true};
+                    continue;
                 }
-                const double reach = settings.grazingLimitPx * footprint;
-                const double far = sampleDepth + reach;
-                quad.corners[k] = {
-                    position, std::clamp(plane.value_or(far), sampleDepth - reach, far), false};
             }
-            quads.push_back(quad);
+            const double reach = settings.grazingLimitPx * footprint;
+            const double far = sampleDepth + reach;
+            quad.corners[k] = {position, std::clamp(plane.value_or(far), sampleDepth - reach, far),
+                               false};
         }
+        quads.push_back(quad);
     }
     return quads;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/scene/topology.h"
 #include "techniques/soft_shadows/shadow_casters.h"
+#include "tests/support/grid.h"
 #include "tests/support/topology.h"
 #include "tests/techniques/soft_shadows/reconstruction_fixture.h"
 #include "tests/techniques/voxelization/shapes.h"
@@ -146,12 +147,10 @@ scene::Mesh grid(unsigned n, Height&& height) {
             mesh.positions.emplace_back(p, height(p));
         }
     }
-    for (unsigned y = 0; y < n; ++y) {
-        for (unsigned x = 0; x < n; ++x) {
-            const unsigned a = y * (n + 1) + x, b = a + 1, c = b + n + 1, d = a + n + 1;
-            mesh.triangles.emplace_back(a, b, c);
-            mesh.triangles.emplace_back(c, d, a);
-        }
+    for (const auto [y, x] : test::grid<unsigned>(n, n)) {
+        const unsigned a = y * (n + 1) + x, b = a + 1, c = b + n + 1, d = a + n + 1;
+        mesh.triangles.emplace_back(a, b, c);
+        mesh.triangles.emplace_back(c, d, a);
     }
     return mesh;
 }

@@ -13,6 +13,7 @@
 #include "techniques/terrain_tessellation/patch_checks.h"
 #include "techniques/terrain_tessellation/tile_selection.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::terrain_tessellation {
 
@@ -22,14 +23,12 @@ inline scene::HeightMap roughMap(int side, float reliefM) {
     map.sizeSamples = {side, side};
     map.spacingM = glm::vec2(1.0F);
     std::mt19937 random(7);
-    for (int row = 0; row < side; ++row) {
-        for (int column = 0; column < side; ++column) {
-            const float x = static_cast<float>(column), z = static_cast<float>(row);
-            const float noise = static_cast<float>(random() % 1024U) / 1024.0F;
-            map.heightsM.push_back(reliefM *
-                                   (0.5F + 0.3F * std::sin(0.031F * x) * std::cos(0.043F * z) +
-                                    0.1F * std::sin(0.17F * x + 0.11F * z) + 0.05F * noise));
-        }
+    for (const auto [row, column] : test::grid(side, side)) {
+        const float x = static_cast<float>(column), z = static_cast<float>(row);
+        const float noise = static_cast<float>(random() % 1024U) / 1024.0F;
+        map.heightsM.push_back(reliefM *
+                               (0.5F + 0.3F * std::sin(0.031F * x) * std::cos(0.043F * z) +
+                                0.1F * std::sin(0.17F * x + 0.11F * z) + 0.05F * noise));
     }
     return map;
 }

@@ -6,6 +6,7 @@
 #include "engine/image/resample.h"
 #include "techniques/kit/path_view.h"
 #include "techniques/terrain_tessellation/terrain_views.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -137,10 +138,8 @@ scene::Scene terrainScene() {
     scene::HeightMap map;
     map.sizeSamples = {33, 33};
     map.spacingM = glm::vec2(10.0F);
-    for (int row = 0; row < 33; ++row) {
-        for (int column = 0; column < 33; ++column) {
-            map.heightsM.push_back(static_cast<float>(column + 2 * row));
-        }
+    for (const auto [row, column] : test::grid(33, 33)) {
+        map.heightsM.push_back(static_cast<float>(column + 2 * row));
     }
     scene.heights = map;
     return scene;

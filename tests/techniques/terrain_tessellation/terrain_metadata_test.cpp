@@ -6,6 +6,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/random.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -60,22 +61,20 @@ TEST(TerrainMetadata, EqualsBruteForce) {
     ASSERT_EQ(metadata.treeSizeSamples(), 64);
     for (int level = 0; level < metadata.levelCount(); ++level) {
         const int size = metadata.blockSizeSamples(level);
-        for (int row = 0; row < metadata.blocksPerSide(level); ++row) {
-            for (int column = 0; column < metadata.blocksPerSide(level); ++column) {
-                SCOPED_TRACE(testing::Message() << level << ' ' << column << ' ' << row);
-                const glm::ivec2 a(column * size, row * size);
-                const glm::ivec2 b = a + size;
-                const Block& block = metadata.block(level, column, row);
-                expectNear(block.whole, bruteForce(map, a, b, level));
-                expectNear(block.edges[kWest], bruteForce(map, a, {a.x, b.y}, level));
-                expectNear(block.edges[kNorth], bruteForce(map, a, {b.x, a.y}, level));
-                expectNear(block.edges[kEast], bruteForce(map, {b.x, a.y}, b, level));
-                expectNear(block.edges[kSouth], bruteForce(map, {a.x, b.y}, b, level));
-                const std::array corners{map.clampedHeightM(a.x, a.y), map.clampedHeightM(b.x, a.y),
-                                         map.clampedHeightM(a.x, b.y),
-                                         map.clampedHeightM(b.x, b.y)};
-                EXPECT_EQ(block.cornersM, corners);
-            }
+        for (const auto [row, column] :
+             test::grid(metadata.blocksPerSide(level), metadata.blocksPerSide(level))) {
+            SCOPED_TRACE(testing::Message() << level << ' ' << column << ' ' << row);
+            const glm::ivec2 a(column * size, row * size);
+            const glm::ivec2 b = a + size;
+            const Block& block = metadata.block(level, column, row);
+            expectNear(block.whole, bruteForce(map, a, b, level));
+            expectNear(block.edges[kWest], bruteForce(map, a, {a.x, b.y}, level));
+            expectNear(block.edges[kNorth], bruteForce(map, a, {b.x, a.y}, level));
+            expectNear(block.edges[kEast], bruteForce(map, {b.x, a.y}, b, level));
+            expectNear(block.edges[kSouth], bruteForce(map, {a.x, b.y}, b, level));
+            const std::array corners{map.clampedHeightM(a.x, a.y), map.clampedHeightM(b.x, a.y),
+                                     map.clampedHeightM(a.x, b.y), map.clampedHeightM(b.x, b.y)};
+            EXPECT_EQ(block.cornersM, corners);
         }
     }
 }
@@ -84,23 +83,20 @@ TEST(TerrainMetadata, NeighboursShareTheirEdgesAndParentsHoldTheirChildren) {
     const TerrainMetadata metadata = TerrainMetadata::build(randomMap(129, 129), {8, 4});
     for (int level = 0; level < metadata.levelCount(); ++level) {
         const int side = metadata.blocksPerSide(level);
-        for (int row = 0; row < side; ++row) {
-            for (int column = 0; column < side; ++column) {
-                const Block& block = metadata.block(level, column, row);
-                if (column + 1 < side) {
-                    EXPECT_EQ(block.edges[kEast],
-                              metadata.block(level, column + 1, row).edges[kWest]);
-                }
-                if (row + 1 < side) {
-                    EXPECT_EQ(block.edges[kSouth],
-                              metadata.block(level, column, row + 1).edges[kNorth]);
-                }
-                if (level == 0) EXPECT_EQ(block.whole.errorM, 0.0F);
-                if (level + 1 == metadata.levelCount()) continue;
-                const Block& parent = metadata.block(level + 1, column / 2, row / 2);
-                EXPECT_LE(parent.whole.minM, block.whole.minM);
-                EXPECT_GE(parent.whole.maxM, block.whole.maxM);
+        for (const auto [row, column] : test::grid(side, side)) {
+            const Block& block = metadata.block(level, column, row);
+            if (column + 1 < side) {
+                EXPECT_EQ(block.edges[kEast], metadata.block(level, column + 1, row).edges[kWest]);
             }
+            if (row + 1 < side) {
+                EXPECT_EQ(block.edges[kSouth],
+                          metadata.block(level, column, row + 1).edges[kNorth]);
+            }
+            if (level == 0) EXPECT_EQ(block.whole.errorM, 0.0F);
+            if (level + 1 == metadata.levelCount()) continue;
+            const Block& parent = metadata.block(level + 1, column / 2, row / 2);
+            EXPECT_LE(parent.whole.minM, block.whole.minM);
+            EXPECT_GE(parent.whole.maxM, block.whole.maxM);
         }
     }
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "techniques/terrain_tessellation/terrain_views.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/terrain_tessellation/terrain_fixture.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -66,22 +67,20 @@ struct FlatTerrainTest : TerrainTest {
             kPictureSize, [&](const gl::Framebuffer& target) { draw(tilesOf(0), view, target); });
         int ground = 0, background = 0;
         std::optional<glm::vec4> first;
-        for (int y = 0; y < kPictureSize.y; ++y) {
-            for (int x = 0; x < kPictureSize.x; ++x) {
-                const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-                const glm::vec3 ray = kit::rayThrough(view, px);
-                const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
-                const glm::vec3 hit = view.eyeWorld + away * ray;
-                const float inside =
-                    std::min(std::min(hit.x, last - hit.x), std::min(hit.z, last - hit.z));
-                if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
-                const bool isTerrain = away > 0.0F && inside > 0.0F;
-                const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kPictureSize.x + x)];
-                ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
-                if (isTerrain && !first) first = pixel;
-                if (isTerrain) EXPECT_LT(glm::distance(pixel, *first), 1e-5F);
-                ++(isTerrain ? ground : background);
-            }
+        for (const auto [y, x] : test::grid(kPictureSize.y, kPictureSize.x)) {
+            const glm::vec2 px(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const glm::vec3 ray = kit::rayThrough(view, px);
+            const float away = ray.y < 0.0F ? -view.eyeWorld.y / ray.y : -1.0F;
+            const glm::vec3 hit = view.eyeWorld + away * ray;
+            const float inside =
+                std::min(std::min(hit.x, last - hit.x), std::min(hit.z, last - hit.z));
+            if (away > 0.0F && std::abs(inside) < 3.0F) continue;  // on the rim
+            const bool isTerrain = away > 0.0F && inside > 0.0F;
+            const glm::vec4 pixel = pixels[static_cast<std::size_t>(y * kPictureSize.x + x)];
+            ASSERT_EQ(pixel.a, isTerrain ? 1.0F : 0.0F) << x << ' ' << y;
+            if (isTerrain && !first) first = pixel;
+            if (isTerrain) EXPECT_LT(glm::distance(pixel, *first), 1e-5F);
+            ++(isTerrain ? ground : background);
         }
         EXPECT_GT(ground, 4000);
         EXPECT_GT(background, 2000);
@@ -120,11 +119,9 @@ scene::HeightMap inclined(glm::vec2 spacingM) {
     scene::HeightMap map;
     map.sizeSamples = glm::ivec2(256.0F / spacingM) + 1;
     map.spacingM = spacingM;
-    for (int row = 0; row < map.sizeSamples.y; ++row) {
-        for (int column = 0; column < map.sizeSamples.x; ++column) {
-            const glm::vec2 at = glm::vec2(column, row) * spacingM;
-            map.heightsM.push_back(0.5F * at.x + 0.25F * at.y);
-        }
+    for (const auto [row, column] : test::grid(map.sizeSamples.y, map.sizeSamples.x)) {
+        const glm::vec2 at = glm::vec2(column, row) * spacingM;
+        map.heightsM.push_back(0.5F * at.x + 0.25F * at.y);
     }
     return map;
 }
@@ -146,21 +143,19 @@ TEST_F(TerrainTest, SamplesThatStandFurtherApartOneWayShowTheSameGround) {
         }));
     }
     int ground = 0, background = 0;
-    for (int y = 0; y < kPictureSize.y; ++y) {
-        for (int x = 0; x < kPictureSize.x; ++x) {
-            const glm::vec3 slope(-0.5F, 1.0F, -0.25F), eye = view.eyeWorld;
-            const glm::vec3 ray =
-                kit::rayThrough(view, {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F});
-            const glm::vec3 hit = eye - glm::dot(eye, slope) / glm::dot(ray, slope) * ray;
-            const float inside =
-                std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
-            if (std::abs(inside) < 6.0F) continue;  // on the rim, whose slope is halved
-            ++(inside > 0.0F ? ground : background);
-            const auto at = static_cast<std::size_t>(y * kPictureSize.x + x);
-            for (const auto& pixels : pictures) {
-                ASSERT_EQ(pixels[at].a, inside > 0.0F ? 1.0F : 0.0F) << x << ' ' << y;
-                ASSERT_LT(glm::distance(pixels[at], pictures[0][at]), 1e-3F) << x << ' ' << y;
-            }
+    for (const auto [y, x] : test::grid(kPictureSize.y, kPictureSize.x)) {
+        const glm::vec3 slope(-0.5F, 1.0F, -0.25F), eye = view.eyeWorld;
+        const glm::vec3 ray =
+            kit::rayThrough(view, {static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F});
+        const glm::vec3 hit = eye - glm::dot(eye, slope) / glm::dot(ray, slope) * ray;
+        const float inside =
+            std::min(std::min(hit.x, 256.0F - hit.x), std::min(hit.z, 256.0F - hit.z));
+        if (std::abs(inside) < 6.0F) continue;  // on the rim, whose slope is halved
+        ++(inside > 0.0F ? ground : background);
+        const auto at = static_cast<std::size_t>(y * kPictureSize.x + x);
+        for (const auto& pixels : pictures) {
+            ASSERT_EQ(pixels[at].a, inside > 0.0F ? 1.0F : 0.0F) << x << ' ' << y;
+            ASSERT_LT(glm::distance(pixels[at], pictures[0][at]), 1e-3F) << x << ' ' << y;
         }
     }
     EXPECT_GT(ground, 1000);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/support/grid.h"
 #include "tests/techniques/technique_fixture.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -16,14 +17,12 @@ scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
     scene::HeightMap map;
     map.sizeSamples = size;
     map.spacingM = glm::vec2(10.0F);
-    for (int row = 0; row < size.y; ++row) {
-        for (int column = 0; column < size.x; ++column) {
-            const double x = column, z = row;
-            const double wave = std::sin(0.05 * x) * std::cos(0.04 * z) +
-                                0.3 * std::sin(0.31 * x + 0.2 * z) +
-                                0.1 * std::sin(1.3 * x) * std::sin(1.1 * z);
-            map.heightsM.push_back(amplitudeM * static_cast<float>(1.5 + wave));
-        }
+    for (const auto [row, column] : test::grid(size.y, size.x)) {
+        const double x = column, z = row;
+        const double wave = std::sin(0.05 * x) * std::cos(0.04 * z) +
+                            0.3 * std::sin(0.31 * x + 0.2 * z) +
+                            0.1 * std::sin(1.3 * x) * std::sin(1.1 * z);
+        map.heightsM.push_back(amplitudeM * static_cast<float>(1.5 + wave));
     }
     scene.heights = std::move(map);
     return scene;

@@ -9,6 +9,7 @@
 #include "engine/scene/height_map.h"
 #include "scenes/terrain/terrain.h"
 #include "techniques/terrain_tessellation/patches.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/terrain_tessellation/terrain_fixture.h"
 
 namespace gfxrepro::terrain_tessellation {
@@ -26,10 +27,8 @@ scene::HeightMap hills(int width, int height) {
     scene::HeightMap map;
     map.sizeSamples = {width, height};
     map.spacingM = square.spacingM * glm::vec2(1.0F, 1.5F);
-    for (int row = 0; row < height; ++row) {
-        for (int column = 0; column < width; ++column) {
-            map.heightsM.push_back(square.heightM(column, row));
-        }
+    for (const auto [row, column] : test::grid(height, width)) {
+        map.heightsM.push_back(square.heightM(column, row));
     }
     return map;
 }
@@ -111,15 +110,12 @@ TEST(TileSelection, DropsNothingThatIsSeen) {
         const TileSelection selection = tree.select(view, kMaxErrorPx);
         culled += selection.culledCount;
         const std::vector<int> counts = coverage(selection, map.sizeSamples - 1);
-        for (int row = 0; row < 256; ++row) {
-            for (int column = 0; column < 256; ++column) {
-                const glm::vec4 clip =
-                    view.clipFromWorld * glm::vec4(map.position(column, row), 1.0F);
-                const bool isSeen = std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w &&
-                                    std::abs(clip.z) < clip.w;
-                ASSERT_LE(counts[row * 256 + column], 1);
-                if (isSeen) ASSERT_EQ(counts[row * 256 + column], 1) << column << ' ' << row;
-            }
+        for (const auto [row, column] : test::grid(256, 256)) {
+            const glm::vec4 clip = view.clipFromWorld * glm::vec4(map.position(column, row), 1.0F);
+            const bool isSeen =
+                std::abs(clip.x) < clip.w && std::abs(clip.y) < clip.w && std::abs(clip.z) < clip.w;
+            ASSERT_LE(counts[row * 256 + column], 1);
+            if (isSeen) ASSERT_EQ(counts[row * 256 + column], 1) << column << ' ' << row;
         }
         // What is left is what the whole selection has, less the tiles outside.
         const TileSelection all = tree.select(view, kMaxErrorPx, false);

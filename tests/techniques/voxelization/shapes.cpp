@@ -1,4 +1,5 @@
 #include "tests/techniques/voxelization/shapes.h"
+#include "tests/support/grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -56,18 +57,14 @@ scene::Mesh torus(const glm::vec3& centre, float radius, float tube, int around,
     const auto index = [&](int i, int j) {
         return static_cast<unsigned>(i % around * across + j % across);
     };
-    for (int i = 0; i < around; ++i) {
-        for (int j = 0; j < across; ++j) {
-            const float a =
-                glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(around);
-            const float b =
-                glm::two_pi<float>() * static_cast<float>(j) / static_cast<float>(across);
-            const float ring = radius + tube * std::cos(b);
-            mesh.positions.push_back(
-                centre + glm::vec3(ring * std::cos(a), tube * std::sin(b), ring * std::sin(a)));
-            mesh.triangles.emplace_back(index(i, j), index(i, j + 1), index(i + 1, j));
-            mesh.triangles.emplace_back(index(i + 1, j), index(i, j + 1), index(i + 1, j + 1));
-        }
+    for (const auto [i, j] : test::grid(around, across)) {
+        const float a = glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(around);
+        const float b = glm::two_pi<float>() * static_cast<float>(j) / static_cast<float>(across);
+        const float ring = radius + tube * std::cos(b);
+        mesh.positions.push_back(
+            centre + glm::vec3(ring * std::cos(a), tube * std::sin(b), ring * std::sin(a)));
+        mesh.triangles.emplace_back(index(i, j), index(i, j + 1), index(i + 1, j));
+        mesh.triangles.emplace_back(index(i + 1, j), index(i, j + 1), index(i + 1, j + 1));
     }
     return mesh;
 }

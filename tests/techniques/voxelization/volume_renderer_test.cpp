@@ -5,6 +5,7 @@
 
 #include "engine/core/random.h"
 #include "techniques/voxelization/phantom.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 #include "tests/techniques/voxelization/voxelizer_fixture.h"
 
@@ -141,12 +142,10 @@ TEST_P(VolumeRendering, OpaqueShowsTheVoxelsThatARayMeetsFirst) {
         const std::vector<std::uint32_t> hits = hitsOf(renderer);
         int different = 0;
         int full = 0;
-        for (int y = 0; y < kSizePx.y; ++y) {
-            for (int x = 0; x < kSizePx.x; ++x) {
-                const std::uint32_t expected = firstHit(grid, rayThrough(camera, grid, x, y));
-                if (expected != 0) ++full;
-                if (hits[static_cast<std::size_t>(y * kSizePx.x + x)] != expected) ++different;
-            }
+        for (const auto [y, x] : test::grid(kSizePx.y, kSizePx.x)) {
+            const std::uint32_t expected = firstHit(grid, rayThrough(camera, grid, x, y));
+            if (expected != 0) ++full;
+            if (hits[static_cast<std::size_t>(y * kSizePx.x + x)] != expected) ++different;
         }
         EXPECT_GT(full, kSizePx.x * kSizePx.y / 20) << shape.text();
         // Rays along an edge between voxels, where single and double precision part.
@@ -165,12 +164,10 @@ TEST_F(GlTest, OpaqueShowsWhatAnEyeOutsideTheGridMeetsFirst) {
         renderer.draw(uploaded(grid), nullptr, nullptr);
         const std::vector<std::uint32_t> hits = hitsOf(renderer);
         int different = 0, full = 0;
-        for (int y = 0; y < kSizePx.y; ++y) {
-            for (int x = 0; x < kSizePx.x; ++x) {
-                const std::uint32_t expected = firstHit(grid, rayThrough(camera, grid, x, y));
-                if (expected != 0) ++full;
-                if (hits[static_cast<std::size_t>(y * kSizePx.x + x)] != expected) ++different;
-            }
+        for (const auto [y, x] : test::grid(kSizePx.y, kSizePx.x)) {
+            const std::uint32_t expected = firstHit(grid, rayThrough(camera, grid, x, y));
+            if (expected != 0) ++full;
+            if (hits[static_cast<std::size_t>(y * kSizePx.x + x)] != expected) ++different;
         }
         EXPECT_GT(full, kSizePx.x * kSizePx.y / 20) << view;
         EXPECT_LE(different, kSizePx.x * kSizePx.y / 1000) << view;
@@ -253,11 +250,9 @@ TEST_F(GlTest, CommonVoxelsOfTwoModelsAreRed) {
     const WorksheetLayout layout(32, 8);
     DenseGrid first(layout);
     DenseGrid second(layout);
-    for (int y = 0; y < 32; ++y) {
-        for (int x = 0; x < 32; ++x) {
-            if (x < 20) first.set({x, y, 16}, 1);
-            if (x >= 12) second.set({x, y, 16}, 1);
-        }
+    for (const auto [y, x] : test::grid(32, 32)) {
+        if (x < 20) first.set({x, y, 16}, 1);
+        if (x >= 12) second.set({x, y, 16}, 1);
     }
     // Blended, too, they are opaque.
     for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "engine/core/files.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 #include "tests/techniques/voxelization/shapes.h"
 
@@ -34,16 +35,14 @@ VoxelModel sample(const GridShape& shape) {
     model.origin = {500000.25, -2, 0.125};
     model.voxelSize = 0.1;
     model.source = "a \"model\"";
-    for (int x = 0; x < shape.size.x; ++x) {
-        for (int y = 0; y < shape.size.y; ++y) {
-            for (int z = 0; z < shape.size.z; ++z) {
-                if ((x * 31 + y * 17 + z * 3) % 7 > 0 && x != 3) continue;
-                model.voxels.emplace_back(x, y, z);
-                model.normals.push_back(glm::normalize(glm::vec3(x, y, z) + 1.0F));
-                model.colors.push_back({static_cast<std::uint8_t>(x % 5 * 50),
-                                        static_cast<std::uint8_t>(y % 4 * 60),
-                                        static_cast<std::uint8_t>(z % 3 * 90)});
-            }
+    for (const auto [x, y] : test::grid(shape.size.x, shape.size.y)) {
+        for (int z = 0; z < shape.size.z; ++z) {
+            if ((x * 31 + y * 17 + z * 3) % 7 > 0 && x != 3) continue;
+            model.voxels.emplace_back(x, y, z);
+            model.normals.push_back(glm::normalize(glm::vec3(x, y, z) + 1.0F));
+            model.colors.push_back({static_cast<std::uint8_t>(x % 5 * 50),
+                                    static_cast<std::uint8_t>(y % 4 * 60),
+                                    static_cast<std::uint8_t>(z % 3 * 90)});
         }
     }
     return model;

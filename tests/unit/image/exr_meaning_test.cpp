@@ -17,6 +17,7 @@
 #include "engine/image/image_file.h"
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {
@@ -26,11 +27,9 @@ struct ExrMeaning : FolderTest {
     /// Pixels of the columns and rows of `data`: red is their column, green their row.
     fs::path write(const char* name, const Rectangle& data, const Rectangle& display) const {
         ImageF colour(data.width, data.height, 3);
-        for (int y = 0; y < data.height; ++y) {
-            for (int x = 0; x < data.width; ++x) {
-                colour.at(x, y, 0) = static_cast<float>(data.left + x);
-                colour.at(x, y, 1) = static_cast<float>(data.top + y);
-            }
+        for (const auto [y, x] : test::grid(data.height, data.width)) {
+            colour.at(x, y, 0) = static_cast<float>(data.left + x);
+            colour.at(x, y, 1) = static_cast<float>(data.top + y);
         }
         ExrImage exr;
         exr.add(colour, {"R", "G", "B"}, ExrPixelType::Float);

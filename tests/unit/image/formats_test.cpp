@@ -18,6 +18,7 @@
 #include "engine/image/png_io.h"
 #include "engine/image/srgb.h"
 #include "tests/support/cut_tiff.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {
@@ -417,10 +418,8 @@ TEST_F(Formats, JpegIsTurnedAsItsExifSays) {
             const bool isFromRight = isIn({2, 3, 6, 7}), isFromBottom = isIn({3, 4, 7, 8});
             int u = isFromRight ? 2 - column : column, v = isFromBottom ? 1 - row : row;
             if (isTransposed) std::swap(u, v);
-            for (int y = 0; y < kSide; ++y) {
-                for (int x = 0; x < kSide; ++x) {
-                    even[static_cast<std::size_t>((v * kSide + y) * width + u * kSide + x)] = value;
-                }
+            for (const auto [y, x] : test::grid(kSide, kSide)) {
+                even[static_cast<std::size_t>((v * kSide + y) * width + u * kSide + x)] = value;
             }
         };
         fill(0, 0, 5);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/image/contact_sheet.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::image {
@@ -14,9 +15,8 @@ namespace {
 /// Each pixel holds 10·y + x.
 ImageF numbered(int width, int height) {
     ImageF image(width, height, 1);
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) image.at(x, y) = static_cast<float>(10 * y + x);
-    }
+    for (const auto [y, x] : test::grid(height, width))
+        image.at(x, y) = static_cast<float>(10 * y + x);
     return image;
 }
 
@@ -65,11 +65,9 @@ TEST(GaussianAveraged, WeighsByDistanceToTheBlocksMiddle) {
         for (int i = 0; i < size; ++i) sum += at(i);
         return at(pixel) / sum;
     };
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 6; ++x) {
-            EXPECT_NEAR(half.at(x, y, 1), weight(2 * x + 1, 5, 12) * weight(2 * y + 1, 2, 8), 1e-6);
-            EXPECT_EQ(half.at(x, y, 0), 0.0F);
-        }
+    for (const auto [y, x] : test::grid(4, 6)) {
+        EXPECT_NEAR(half.at(x, y, 1), weight(2 * x + 1, 5, 12) * weight(2 * y + 1, 2, 8), 1e-6);
+        EXPECT_EQ(half.at(x, y, 0), 0.0F);
     }
     // What is the same everywhere stays, at the border, too.
     const ImageF grey = gaussianAveraged(ImageF(8, 8, 1, 0.25F), 4, 4.0);
@@ -125,9 +123,7 @@ TEST(Text, LettersAreDrawnFromTheUpperLeftAndCutAtTheEdges) {
 
 TEST(ContactSheet, LaysAlphaOverTheGroundAndRefuses) {
     Image8 clear(4, 4, 4, 255);
-    for (int y = 0; y < 4; ++y) {
-        for (int x = 0; x < 4; ++x) clear.at(x, y, 3) = 0;
-    }
+    for (const auto [y, x] : test::grid(4, 4)) clear.at(x, y, 3) = 0;
     const Image8 images[] = {clear, Image8(4, 2, 2, 255)};
     SheetLayout layout;
     layout.columns = 5;  // more than there are images

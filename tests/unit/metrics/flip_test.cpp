@@ -11,6 +11,7 @@
 
 #include "engine/core/random.h"
 #include "engine/metrics/flip.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 #include "tests/unit/metrics/pairs.h"
 
@@ -167,15 +168,13 @@ ImageF colouredNoise(int width, int height, std::uint64_t seed) {
 /// A dark ground, a bright square, a coloured line: edges, points, and the colours between.
 ImageF drawing(int width, int height, int shift) {
     ImageF image(width, height, 3, 0.05F);
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const int u = x - shift;
-            if (u >= 5 && u < 14 && y >= 4 && y < 12) {
-                image.at(x, y, 0) = 0.9F;
-                image.at(x, y, 1) = 0.7F;
-            }
-            if (u == 17) image.at(x, y, 2) = 1.0F;
+    for (const auto [y, x] : test::grid(height, width)) {
+        const int u = x - shift;
+        if (u >= 5 && u < 14 && y >= 4 && y < 12) {
+            image.at(x, y, 0) = 0.9F;
+            image.at(x, y, 1) = 0.7F;
         }
+        if (u == 17) image.at(x, y, 2) = 1.0F;
     }
     return image;
 }
@@ -189,12 +188,10 @@ ImageF filled(int width, int height, const std::array<float, 3>& colour) {
 template <class Source>
 ImageF remapped(const ImageF& image, int width, int height, Source&& source) {
     ImageF result(width, height, image.channels());
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const auto [fromX, fromY] = source(x, y);
-            for (int c = 0; c < image.channels(); ++c) {
-                result.at(x, y, c) = image.at(fromX, fromY, c);
-            }
+    for (const auto [y, x] : test::grid(height, width)) {
+        const auto [fromX, fromY] = source(x, y);
+        for (int c = 0; c < image.channels(); ++c) {
+            result.at(x, y, c) = image.at(fromX, fromY, c);
         }
     }
     return result;
@@ -203,10 +200,8 @@ ImageF remapped(const ImageF& image, int width, int height, Source&& source) {
 void expectNear(const ImageF& a, const ImageF& b, float tolerance) {
     ASSERT_EQ(a.width(), b.width());
     ASSERT_EQ(a.height(), b.height());
-    for (int y = 0; y < a.height(); ++y) {
-        for (int x = 0; x < a.width(); ++x) {
-            ASSERT_NEAR(a.at(x, y), b.at(x, y), tolerance) << "at (" << x << ", " << y << ")";
-        }
+    for (const auto [y, x] : test::grid(a.height(), a.width())) {
+        ASSERT_NEAR(a.at(x, y), b.at(x, y), tolerance) << "at (" << x << ", " << y << ")";
     }
 }
 
@@ -245,13 +240,11 @@ TEST(Flip, FollowsTheDefinition) {
     for (const Case& c : cases) {
         const ImageF map = flipMap(c.reference, c.test, c.pixelsPerDegree);
         double sum = 0.0;
-        for (int y = 0; y < map.height(); ++y) {
-            for (int x = 0; x < map.width(); ++x) {
-                const double expected = bruteFlip(c.reference, c.test, c.pixelsPerDegree, x, y);
-                sum += expected;
-                // D65 as the reference implementation rounds it, and single precision.
-                EXPECT_NEAR(map.at(x, y), expected, 3e-4) << "at (" << x << ", " << y << ")";
-            }
+        for (const auto [y, x] : test::grid(map.height(), map.width())) {
+            const double expected = bruteFlip(c.reference, c.test, c.pixelsPerDegree, x, y);
+            sum += expected;
+            // D65 as the reference implementation rounds it, and single precision.
+            EXPECT_NEAR(map.at(x, y), expected, 3e-4) << "at (" << x << ", " << y << ")";
         }
         EXPECT_NEAR(flip(c.reference, c.test, c.pixelsPerDegree),
                     sum / (map.width() * map.height()), 1e-4);

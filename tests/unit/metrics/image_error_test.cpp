@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/core/random.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::metrics {
@@ -57,23 +58,19 @@ TEST(ImageError, SimilarityFollowsTheDefinition) {
             const auto g = [](int i, int j) {
                 return std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / 4.5);
             };
-            for (int j = 0; j < 11; ++j) {
-                for (int i = 0; i < 11; ++i) {
-                    weight += g(i, j);
-                    ma += g(i, j) * double{a.at(x0 + i, y0 + j)};
-                    mb += g(i, j) * double{b.at(x0 + i, y0 + j)};
-                }
+            for (const auto [j, i] : test::grid(11, 11)) {
+                weight += g(i, j);
+                ma += g(i, j) * double{a.at(x0 + i, y0 + j)};
+                mb += g(i, j) * double{b.at(x0 + i, y0 + j)};
             }
             ma /= weight;
             mb /= weight;
-            for (int j = 0; j < 11; ++j) {
-                for (int i = 0; i < 11; ++i) {
-                    const double da = double{a.at(x0 + i, y0 + j)} - ma;
-                    const double db = double{b.at(x0 + i, y0 + j)} - mb;
-                    va += g(i, j) / weight * da * da;
-                    vb += g(i, j) / weight * db * db;
-                    cov += g(i, j) / weight * da * db;
-                }
+            for (const auto [j, i] : test::grid(11, 11)) {
+                const double da = double{a.at(x0 + i, y0 + j)} - ma;
+                const double db = double{b.at(x0 + i, y0 + j)} - mb;
+                va += g(i, j) / weight * da * da;
+                vb += g(i, j) / weight * db * db;
+                cov += g(i, j) / weight * da * db;
             }
             total += (2 * ma * mb + 1e-4) * (2 * cov + 9e-4) /
                      ((ma * ma + mb * mb + 1e-4) * (va + vb + 9e-4));
@@ -85,9 +82,7 @@ TEST(ImageError, SimilarityFollowsTheDefinition) {
 TEST(ImageError, ColourIsComparedByLuminance) {
     ImageF green(16, 16, 3);
     ImageF grey(16, 16, 1, 0.7152F);
-    for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 16; ++x) green.at(x, y, 1) = 1.0F;
-    }
+    for (const auto [y, x] : test::grid(16, 16)) green.at(x, y, 1) = 1.0F;
     ImageF black3(16, 16, 3);
     ImageF black1(16, 16, 1);
     EXPECT_NEAR(structuralSimilarity(green, black3), structuralSimilarity(grey, black1), 1e-6);

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "engine/core/random.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::metrics {
@@ -56,13 +57,11 @@ double heavyTail(Random& random) {
 /// A picture of so many samples a pixel; in it a square of 8 × 8 pixels is `bias` too bright.
 ImageF picture(const Noise& noise, int samples, Random& random, double bias = 0.0) {
     ImageF image(kWidthPx, kHeightPx, 1);
-    for (int y = 0; y < kHeightPx; ++y) {
-        for (int x = 0; x < kWidthPx; ++x) {
-            double sum = 0.0;
-            for (int i = 0; i < samples; ++i) sum += noise(random);
-            const bool isBiased = x < kMeanTilePx && y < kMeanTilePx;
-            image.at(x, y) = static_cast<float>(sum / samples * (isBiased ? 1.0 + bias : 1.0));
-        }
+    for (const auto [y, x] : test::grid(kHeightPx, kWidthPx)) {
+        double sum = 0.0;
+        for (int i = 0; i < samples; ++i) sum += noise(random);
+        const bool isBiased = x < kMeanTilePx && y < kMeanTilePx;
+        image.at(x, y) = static_cast<float>(sum / samples * (isBiased ? 1.0 + bias : 1.0));
     }
     return image;
 }

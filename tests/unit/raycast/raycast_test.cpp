@@ -10,6 +10,7 @@
 #include "scenes/registry.h"
 #include "scenes/shared/mesh_builder.h"
 #include "tests/support/crossings.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::raycast {
@@ -300,12 +301,10 @@ TEST(RayTracer, HitsBetweenAreTheNearestOnesOneBehindTheOther) {
 
 TEST(RayTracer, ColumnsThroughATorusCrossAnEvenNumberOfTimes) {
     const RayTracer torus(body("torus", 4000));
-    for (int y = 0; y < 64; ++y) {
-        for (int x = 0; x < 64; ++x) {
-            const glm::vec3 origin((static_cast<float>(x) + 0.5F) / 32.0F - 1.0F,
-                                   (static_cast<float>(y) + 0.5F) / 32.0F - 1.0F, -2.0F);
-            EXPECT_EQ(test::crossings(torus, origin, {0, 0, 1}).size() % 2, 0U);
-        }
+    for (const auto [y, x] : test::grid(64, 64)) {
+        const glm::vec3 origin((static_cast<float>(x) + 0.5F) / 32.0F - 1.0F,
+                               (static_cast<float>(y) + 0.5F) / 32.0F - 1.0F, -2.0F);
+        EXPECT_EQ(test::crossings(torus, origin, {0, 0, 1}).size() % 2, 0U);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include "engine/image/png_io.h"
 #include "runner/report/pages.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::report {
@@ -18,11 +19,9 @@ using claims::Verdict;
 void writeNoise(const fs::path& file, int sizePx, unsigned seed = 1) {
     std::mt19937 random(seed);
     image::Image8 picture(sizePx, sizePx, 3);
-    for (int y = 0; y < sizePx; ++y) {
-        for (int x = 0; x < sizePx; ++x) {
-            for (int c = 0; c < 3; ++c) {
-                picture.at(x, y, c) = static_cast<std::uint8_t>(random() & 0xFFU);
-            }
+    for (const auto [y, x] : test::grid(sizePx, sizePx)) {
+        for (int c = 0; c < 3; ++c) {
+            picture.at(x, y, c) = static_cast<std::uint8_t>(random() & 0xFFU);
         }
     }
     image::writePng(file, picture);

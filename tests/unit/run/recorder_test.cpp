@@ -10,6 +10,7 @@
 #include "runner/run/manifest.h"
 #include "runner/run/measure.h"
 #include "runner/run/recorder.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::run {
@@ -32,10 +33,8 @@ Case someCase() {
 /// A row vector times the matrix, as OpenEXR and Imath have it.
 glm::vec4 times(const glm::vec4& v, const std::array<float, 16>& m) {
     glm::vec4 result(0.0F);
-    for (int column = 0; column < 4; ++column) {
-        for (int row = 0; row < 4; ++row) {
-            result[column] += v[row] * m[static_cast<std::size_t>(4 * row + column)];
-        }
+    for (const auto [column, row] : test::grid(4, 4)) {
+        result[column] += v[row] * m[static_cast<std::size_t>(4 * row + column)];
     }
     return result;
 }
@@ -278,10 +277,8 @@ TEST(Pacing, FramesInFlightTakeFiftyMillisecondsTogether) {
 
 image::ImageF ramp(float shift = 0.0F) {
     image::ImageF image(32, 16, 3);
-    for (int y = 0; y < 16; ++y) {
-        for (int x = 0; x < 32; ++x) {
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>(x) / 31.0F + shift;
-        }
+    for (const auto [y, x] : test::grid(16, 32)) {
+        for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>(x) / 31.0F + shift;
     }
     return image;
 }

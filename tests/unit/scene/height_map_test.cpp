@@ -13,6 +13,7 @@
 #include "engine/image/png_io.h"
 #include "engine/scene/scene.h"
 #include "scenes/terrain/terrain.h"
+#include "tests/support/grid.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::scene {
@@ -367,13 +368,11 @@ TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
     const HeightMap rough = resampled(coarse, 257, 30.0F, 1);
     EXPECT_EQ(rough.spacingM, glm::vec2(20.0F));
     float greatest = 0.0F;
-    for (int row = 0; row < 257; ++row) {
-        for (int column = 0; column < 257; ++column) {
-            greatest = std::max(greatest,
-                                std::abs(rough.heightM(column, row) - smooth.heightM(column, row)));
-            if (row % 8 == 0 && column % 8 == 0) {
-                EXPECT_EQ(rough.heightM(column, row), coarse.heightM(column / 8, row / 8));
-            }
+    for (const auto [row, column] : test::grid(257, 257)) {
+        greatest =
+            std::max(greatest, std::abs(rough.heightM(column, row) - smooth.heightM(column, row)));
+        if (row % 8 == 0 && column % 8 == 0) {
+            EXPECT_EQ(rough.heightM(column, row), coarse.heightM(column / 8, row / 8));
         }
     }
     EXPECT_GT(greatest, 1.0F);
