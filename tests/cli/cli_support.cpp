@@ -32,6 +32,10 @@ ProcessResult mockGfxrepro(std::vector<std::string> arguments,
     return runProgram(arguments);
 }
 
+ProcessResult shell(const std::string& line) {
+    return runProgram({"/bin/sh", "-c", line});
+}
+
 ProcessResult endedWith(int exitCode, ProcessResult result, int line) {
     EXPECT_EQ(result.exitCode, exitCode) << "line " << line << ": " << result.out << result.err;
     return result;

@@ -28,6 +28,9 @@ ProcessResult gfxrepro(std::vector<std::string> arguments,
 ProcessResult mockGfxrepro(std::vector<std::string> arguments,
                            const std::vector<std::string>& more = {});
 
+/// A line of a shell.
+ProcessResult shell(const std::string& line);
+
 /// A result that must have this exit code; a failure names the caller's line.
 ProcessResult endedWith(int exitCode, ProcessResult result, int line = __builtin_LINE());
 

@@ -72,9 +72,8 @@ TEST(Plan, NewestRunsTellAndBrokenOnesDoNotStop) {
     const TemporaryFolder folder;
     const std::string config = writeNumbers(folder, 2);
     const auto inFolder = [&](const std::string& command) {
-        return runProgram(
-            {"/bin/sh", "-c",
-             "cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM "' " + command});
+        return shell("cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM "' " +
+                     command);
     };
     ASSERT_EQ(inFolder("run mock.yaml --device software --quiet").exitCode, 0);
     folder.write("runs/broken/plan.json", "{");
@@ -276,10 +275,10 @@ TEST_F(Submit, CommandsMeasureAndMerge) {
     EXPECT_EQ(endedWith(4, mockGfxrepro({"submit", "--status", out})).out,
               "shard  done  failed  state\n1/2    0/3   0       not complete\n"
               "2/2    0/2   0       not complete\nmerge                not complete\n");
-    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 4);  // one case throws
-    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
-    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);  // again: nothing to do
-    EXPECT_THAT(endedWith(4, runProgram({"/bin/sh", "-c", lines[2]})).out,
+    EXPECT_EQ(shell(lines[0]).exitCode, 4);  // one case throws
+    EXPECT_EQ(shell(lines[1]).exitCode, 0);
+    EXPECT_EQ(shell(lines[1]).exitCode, 0);  // again: nothing to do
+    EXPECT_THAT(endedWith(4, shell(lines[2])).out,
                 HasSubstr(": 4 of 5 measured, 1 failed, 0 missing\n"));
     const ProcessResult done =
         endedWith(4, mockGfxrepro({"submit", "--status", out}));  // a case failed
@@ -298,11 +297,11 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
                                               out,      "--engine", "commands", "--shards", "2"};
     const ProcessResult submitted = endedWith(0, mockGfxrepro(command));
     const std::vector<std::string> lines = split(submitted.out, '\n');
-    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    ASSERT_EQ(shell(lines[0]).exitCode, 0);
     writeNumbers(folder, 3, "params: {pause_ms: 1}\n");
     const std::string warning = "warning: " + config + " changed; what was submitted is measured\n";
-    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[1]})).err, HasSubstr(warning));
-    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[2]})).out,
+    EXPECT_THAT(endedWith(0, shell(lines[1])).err, HasSubstr(warning));
+    EXPECT_THAT(endedWith(0, shell(lines[2])).out,
                 HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
     // Submitted once more it is the same submission.
     const ProcessResult again = endedWith(0, mockGfxrepro(command));
@@ -316,7 +315,7 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     ASSERT_EQ(mockGfxrepro(command).exitCode, 0);
     EXPECT_EQ(readFile(file), plan);
     folder.write("out/submitted-program/shaders/other.glsl", "");
-    const ProcessResult other = endedWith(2, runProgram({"/bin/sh", "-c", lines[0]}));
+    const ProcessResult other = endedWith(2, shell(lines[0]));
     EXPECT_THAT(other.err,
                 HasSubstr(shard + ": cannot be measured: the program or a shader changed (build "));
     EXPECT_THAT(other.err, HasSubstr(" now); submit again, to another folder\n"));
@@ -327,7 +326,7 @@ TEST_F(Submit, WhatWasSubmittedIsMeasured) {
     std::string changed = plan;
     changed.replace(changed.find("\"build\": \"") + 10, 12, "000000000000");
     writeFileAtomic(file, changed);
-    EXPECT_THAT(runProgram({"/bin/sh", "-c", lines[0]}).err,
+    EXPECT_THAT(shell(lines[0]).err,
                 HasSubstr("is not the one that was planned: plan.json was changed\n"));
     EXPECT_FALSE(fs::exists(shard + "/records.csv"));
 }
@@ -358,7 +357,7 @@ TEST_F(Submit, AShardHasTheSizeOfItsOwnCases) {
         const std::string out = folder.path() / std::to_string(i);
         const std::vector<std::string> lines = submitPairs(folder, i == 0 ? 8 : 800, out);
         planned[i] = sizeOf(out + "/shards/1");
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+        ASSERT_EQ(shell(lines[0]).exitCode, 0);
         measured[i] = sizeOf(out + "/shards/1");
         command[i] = lines.back().size();
         EXPECT_EQ(paramsOf(out + "/shards/1").size(), 2U);
@@ -373,7 +372,7 @@ TEST_F(Submit, AShardHasTheSizeOfItsOwnCases) {
 TEST_F(Submit, OfAShardTheExperimentsAreNotReadForAMerge) {
     const std::string out = folder.path() / "out", shard = out + "/shards/1";
     const std::vector<std::string> lines = submitPairs(folder, 4, out);
-    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    ASSERT_EQ(shell(lines[0]).exitCode, 0);
     const run::StoredRun whole = run::readRun(shard), part = run::readPart(shard);
     ASSERT_EQ(part.plan.experiments.size(), 1U);
     EXPECT_TRUE(part.plan.experiments[0].sweep.isNull());
@@ -394,7 +393,7 @@ TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
         "gfxrepro: " + out + "/shards/1: was planned, and not begun (it has no manifest.json)\n");
     EXPECT_EQ(mockGfxrepro({"merge", out}).err,
               "gfxrepro: merge: none of the folders holds a run\n");
-    ASSERT_EQ(runProgram({"/bin/sh", "-c", lines[0]}).exitCode, 0);
+    ASSERT_EQ(shell(lines[0]).exitCode, 0);
     fs::copy(out + "/shards/1", alone, fs::copy_options::recursive);
     for (const char* command : {"table", "report"}) {
         EXPECT_EQ(mockGfxrepro({command, alone}).exitCode, 0) << command;
@@ -420,7 +419,7 @@ TEST_F(Submit, AShardIsReadWhereverItIsAndMergedWithItsSubmission) {
 TEST_F(Submit, AReplacedPlanIsNotMerged) {
     const std::string out = folder.path() / "out", other = folder.path() / "other";
     for (const std::string& line : submitPairs(folder, 4, out)) {
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+        ASSERT_EQ(shell(line).exitCode, 0);
     }
     const std::string file = out + "/submitted-plan.json", plan = readFile(file);
     submitPairs(folder, 6, other);
@@ -443,7 +442,7 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
     writeFileAtomic(file, plan);
     fs::rename(out + "/shards/2", folder.path() / "kept");
     for (const std::string& line : submitPairs(folder, 6, other)) {
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+        ASSERT_EQ(shell(line).exitCode, 0);
     }
     fs::copy(other + "/shards/2", out + "/shards/2", fs::copy_options::recursive);
     expectRefused("/shards/2 are shards of different plans (", replaced);
@@ -469,7 +468,7 @@ TEST_F(Submit, AReplacedPlanIsNotMerged) {
 TEST_F(Submit, ShardsInEachOthersFoldersAreMergedAndTheOutputsOfAnotherAreNot) {
     const std::string out = folder.path() / "out", apart = folder.path() / "apart";
     for (const std::string& line : submitPairs(folder, 4, out)) {
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+        ASSERT_EQ(shell(line).exitCode, 0);
     }
     const auto exchange = [&](const std::string& file) {
         fs::rename(out + "/shards/1" + file, apart);
@@ -499,7 +498,7 @@ TEST_F(Submit, ShardsInEachOthersFoldersAreMergedAndTheOutputsOfAnotherAreNot) {
 TEST_F(Submit, TheStatusOfWhatEndedNeedsNoWholePlan) {
     const std::string out = folder.path() / "out";
     for (const std::string& line : submitPairs(folder, 4, out)) {
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+        ASSERT_EQ(shell(line).exitCode, 0);
     }
     writeFileAtomic(out + "/plan.json", "of a thousand shards this would take long");
     const ProcessResult status = endedWith(0, mockGfxrepro({"submit", "--status", out}));
@@ -540,8 +539,8 @@ TEST_F(Submit, TheProgramThatWasSubmittedRunsWhateverIsBuiltLater) {
     EXPECT_EQ(again.exitCode, 0) << again.err;
     EXPECT_EQ(again.out, submitted.out);
     fs::remove_all(folder.path() / "built");
-    EXPECT_EQ(runProgram({"/bin/sh", "-c", lines[1]}).exitCode, 0);
-    EXPECT_THAT(endedWith(0, runProgram({"/bin/sh", "-c", lines[2]})).out,
+    EXPECT_EQ(shell(lines[1]).exitCode, 0);
+    EXPECT_THAT(endedWith(0, shell(lines[2])).out,
                 HasSubstr(": 2 of 2 measured, 0 failed, 0 missing\n"));
 }
 
@@ -573,7 +572,7 @@ TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
         endedWith(0, runProgram({program, "submit", config, "--device", "software", "--out", out,
                                  "--engine", "commands", "--shards", "2"}));
     for (const std::string& line : split(submitted.out, '\n')) {
-        EXPECT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0) << line;
+        EXPECT_EQ(shell(line).exitCode, 0) << line;
     }
     const std::string library = out + "/submitted-program/lib/libsome.so.6";
     EXPECT_EQ(readFile(library), "a library");
@@ -589,7 +588,7 @@ TEST_F(Submit, LinksAmongTheProgramsLibrariesAreFollowed) {
 TEST_F(Submit, AShardWhosePlanWasChangedIsNotMerged) {
     const std::string out = folder.path() / "out";
     for (const std::string& line : submitPairs(folder, 4, out)) {
-        ASSERT_EQ(runProgram({"/bin/sh", "-c", line}).exitCode, 0);
+        ASSERT_EQ(shell(line).exitCode, 0);
     }
     const std::string file = out + "/shards/1/plan.json", plan = readFile(file);
     // In its parameters; in what was swept; in what was given.
@@ -683,9 +682,7 @@ TEST_F(Submit, SlurmIsAskedAndItsRefusalIsSaid) {
               "4 cases in 2 shards of 2 to 2 units; no earlier run tells their time\n"
               "gfxrepro: OUT: shard 1 is RUNNING already; wait, or scancel 41\n");
     // A queue that does not answer is no end, and the files go first.
-    ASSERT_EQ(runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"})
-                  .exitCode,
-              0);
+    ASSERT_EQ(shell("SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'").exitCode, 0);
     const std::string mute = fakeSlurm(folder, "echo 43\n", "exit 1\n");
     EXPECT_THAT(runProgram({GFXREPRO_MOCK_PROGRAM, "submit", "--status", out}, {mute}).out,
                 HasSubstr("1/2    2/2   0       complete\n"
@@ -734,8 +731,7 @@ TEST_F(Submit, WhatWasRefusedIsNotQueued) {
     // What is queued then is what the config says then; so it is where a submit was killed.
     folder.write("out/submitted-plan.json", "of another day");
     endedWith(0, submitted(writeNumbers(folder, 3), fakeSlurm(folder, "echo 7\n", "exit 1\n")));
-    endedWith(0,
-              runProgram({"/bin/sh", "-c", "SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"}));
+    endedWith(0, shell("SLURM_ARRAY_TASK_ID=1 exec sh '" + out + "/task.sh'"));
     EXPECT_EQ(rowsOf(out + "/shards/1", "number").size(), 3U);
 }
 

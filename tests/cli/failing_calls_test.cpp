@@ -186,9 +186,8 @@ TEST_F(FailingCalls, OfFoldersAreSaidWithTheFolder) {
 /// The mock in a shell, where no file can grow beyond `blocks` of 512 bytes: what a full disk looks
 /// like to a program that outlives the signal.
 ProcessResult mockWithFullDisk(const std::string& arguments, int blocks) {
-    return runProgram({"/bin/sh", "-c",
-                       "trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec " +
-                           GFXREPRO_MOCK_PROGRAM + " " + arguments});
+    return shell("trap '' XFSZ; ulimit -f " + std::to_string(blocks) + "; exec " +
+                 GFXREPRO_MOCK_PROGRAM + " " + arguments);
 }
 
 using Disk = test::RunTest;
@@ -196,9 +195,8 @@ using Disk = test::RunTest;
 TEST_F(Disk, ALimitOnFilesIsAWriteThatFails) {
     const std::string config = writeMockConfig(folder, "sweep: {number: [1, 2]}\n");
     const ProcessResult run =
-        endedWith(2, runProgram({"/bin/sh", "-c",
-                                 std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM +
-                                     " run " + config + " --device software --out " + dir}));
+        endedWith(2, shell(std::string("ulimit -f 1; exec ") + GFXREPRO_MOCK_PROGRAM + " run " +
+                           config + " --device software --out " + dir));
     EXPECT_THAT(run.err, HasSubstr("gfxrepro: cannot write " + dir));
     EXPECT_THAT(run.err, HasSubstr(": File too large\n"));
 }

@@ -140,9 +140,8 @@ TEST_F(OwnExperiment, RoundsOfWhoNamesNoLaneEndWithTheirBudget) {
 TEST_F(OwnExperiment, LatestIsTheNewestAndRunsAreListed) {
     const std::string config = writeMockConfig(folder, "");
     const auto inFolder = [&](const std::string& words) {
-        return runProgram(
-            {"/bin/sh", "-c",
-             "cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM + "' " + words});
+        return shell("cd '" + folder.path().string() + "' && '" + GFXREPRO_MOCK_PROGRAM + "' " +
+                     words);
     };
     EXPECT_THAT(inFolder("table latest").err, HasSubstr("latest: there is no run in runs/"));
     for (const char* name : {"runs/20260101-a", "runs/20260102-b"}) {

@@ -33,9 +33,8 @@ TEST(LargePlan, IsListedAsItComes) {
     const std::string file = folder.path() / "out";
     const auto list = [&](const std::string& axes, const std::string& form) {
         const ProcessResult plan =
-            endedWith(0, runProgram({"/bin/sh", "-c",
-                                     "exec " GFXREPRO_PROGRAM " plan " + largeConfig(folder, axes) +
-                                         form + " >" + file}));
+            endedWith(0, shell("exec " GFXREPRO_PROGRAM " plan " + largeConfig(folder, axes) +
+                               form + " >" + file));
         EXPECT_LT(plan.peakBytes, kMostBytes) << form << "\n" << axes;
         EXPECT_GT(fs::file_size(file), 10'000'000U);
     };

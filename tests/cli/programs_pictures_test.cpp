@@ -193,7 +193,7 @@ TEST_F(PicturesOfPrograms, TwoPatternsAreComparedByAFewLines) {
 // The configs of configs/external and GUIDE.md's example, on real programs.
 
 bool isHere(const std::string& program) {
-    return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;
+    return shell("command -v " + program).exitCode == 0;
 }
 
 /// Every claim of the shipped config holds.

@@ -451,8 +451,7 @@ TEST_F(ExternalProgram, CheckAndDescribeKnowWhatItDeclares) {
     write("");
     const std::string inItsFolder =
         "cd " + folder.path().string() + " && " + GFXREPRO_PROGRAM + " check mine.yaml";
-    EXPECT_EQ(runProgram({"/bin/sh", "-c", inItsFolder}).out,
-              "mine.yaml: ok, sweep/mine, 1 case, 0 claims\n");
+    EXPECT_EQ(shell(inItsFolder).out, "mine.yaml: ok, sweep/mine, 1 case, 0 claims\n");
     const ProcessResult described = endedWith(0, gfxrepro({"describe", write("")}));
     EXPECT_THAT(described.out, HasSubstr("given back [1; 0 … 100]"));
     EXPECT_THAT(described.out, HasSubstr("{here}/renderer.sh {behaviour} {given} {out}"));

@@ -238,10 +238,7 @@ TEST(Export, AnArtifactCanBeMeasuredAgain) {
     }
     EXPECT_THAT(readFile(artifact + "/environment.txt"), HasSubstr("gl.renderer: llvmpipe"));
     EXPECT_THAT(readFile(artifact + "/README.md"), HasSubstr("| scripts/sweep-mock.sh | 0.0 | "));
-    EXPECT_EQ(
-        runProgram({"/bin/sh", "-c", "cd " + artifact + " && sha256sum --quiet -c SHA256SUMS"})
-            .exitCode,
-        0);
+    EXPECT_EQ(shell("cd " + artifact + " && sha256sum --quiet -c SHA256SUMS").exitCode, 0);
     const ProcessResult again =
         endedWith(0, runProgram({artifact + "/scripts/sweep-mock.sh"},
                                 {std::string("GFXREPRO=") + GFXREPRO_MOCK_PROGRAM}));

@@ -17,7 +17,7 @@ std::vector<std::string> linesOfText(const std::string& text) {
 }
 
 bool isInstalled(const std::string& program) {
-    return runProgram({"/bin/sh", "-c", "command -v " + program}).exitCode == 0;
+    return shell("command -v " + program).exitCode == 0;
 }
 
 std::string manPage() {

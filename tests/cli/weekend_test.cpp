@@ -14,10 +14,6 @@
 namespace gfxrepro::test {
 namespace {
 
-ProcessResult shell(const std::string& line) {
-    return runProgram({"/bin/sh", "-c", line});
-}
-
 std::string mockRun(const std::string& config, const std::string& dir) {
     return GFXREPRO_MOCK_PROGRAM " run " + config + " --device software --out " + dir;
 }
