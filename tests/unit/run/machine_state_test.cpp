@@ -63,66 +63,44 @@ TEST(MachineState, KnowsNothingWhereNothingIsTold) {
     EXPECT_EQ(state.sentence(), "");
 }
 
-TEST(MachineState, DoesNotCountOurOwnWorkAsThatOfOthers) {
-    Machine machine;
-    const MachineReading before = machine.read();
-    machine.busyS += 20.0;  // both processors, for ten seconds
-    machine.ownS += 4.0;
-    machine.workerS += 15.9;
-    const MachineState state = stateOf(before, machine.read());
-    EXPECT_THAT(state.problems(), IsEmpty());
-    EXPECT_EQ(state.sentence(),
-              "Nothing disturbed the machine while this was timed: other processes took 0.5 % of 2 "
-              "processors, the host 0 %.");
-}
+/// What is said of two processors while these seconds were spent.
+struct Spent {
+    double busyS = 0.0, idleS = 0.0, stolenS = 0.0, ownS = 0.0, workerS = 0.0;
 
-TEST(MachineState, SaysNothingOfARemainder) {
-    Machine machine;
-    const MachineReading before = machine.read();
-    machine.busyS += 3.0;
-    machine.workerS += 2.9999;  // of twenty seconds of two processors
-    machine.idleS += 17.0;
-    EXPECT_EQ(stateOf(before, machine.read()).sentence(),
-              "Nothing disturbed the machine while this was timed: other processes took 0 % of 2 "
-              "processors, the host 0 %.");
-}
+    MachineState state() const {
+        Machine machine;
+        const MachineReading before = machine.read();
+        machine.busyS += busyS;
+        machine.idleS += idleS;
+        machine.stolenS += stolenS;
+        machine.ownS += ownS;
+        machine.workerS += workerS;
+        return stateOf(before, machine.read());
+    }
+};
 
-TEST(MachineState, IsLoadedByTheWorkOfOthers) {
-    Machine machine;
-    const MachineReading before = machine.read();
-    machine.busyS += 15.6;
-    machine.idleS += 4.4;
-    machine.workerS += 8.0;
-    const MachineState state = stateOf(before, machine.read());
-    EXPECT_THAT(state.problems(), ElementsAre("other processes took 38 % of 2 processors"));
-    EXPECT_EQ(state.sentence(),
+TEST(MachineState, SaysWhatTheWorkOfOthersAndTheHostTook) {
+    const std::string quiet = "Nothing disturbed the machine while this was timed: ";
+    // Our own work is not that of others.
+    const MachineState own = Spent{.busyS = 20.0, .ownS = 4.0, .workerS = 15.9}.state();
+    EXPECT_THAT(own.problems(), IsEmpty());
+    EXPECT_EQ(own.sentence(), quiet + "other processes took 0.5 % of 2 processors, the host 0 %.");
+    const Spent remainder{.busyS = 3.0, .idleS = 17.0, .workerS = 2.9999};
+    EXPECT_EQ(remainder.state().sentence(),
+              quiet + "other processes took 0 % of 2 processors, the host 0 %.");
+    const MachineState loaded = Spent{.busyS = 15.6, .idleS = 4.4, .workerS = 8.0}.state();
+    EXPECT_THAT(loaded.problems(), ElementsAre("other processes took 38 % of 2 processors"));
+    EXPECT_EQ(loaded.sentence(),
               "The machine was disturbed while this was timed: other processes took 38 % of 2 "
               "processors.");
-}
-
-/// What any system does of itself, and what is less than the kernel's ticks tell.
-TEST(MachineState, IsNotLoadedByALittle) {
-    Machine machine;
-    const MachineReading before = machine.read();
-    machine.busyS += 0.9;
-    machine.stolenS += 0.15;
-    machine.idleS += 18.95;
-    EXPECT_THAT(stateOf(before, machine.read()).problems(), IsEmpty());
-    const MachineReading shortly = machine.read();
-    machine.busyS += 0.1;
-    EXPECT_THAT(stateOf(shortly, machine.read()).problems(), IsEmpty());
-    EXPECT_EQ(stateOf(shortly, machine.read()).sentence(), "");  // nor called quiet
-}
-
-TEST(MachineState, IsStolenFromByItsHost) {
-    Machine machine;
-    const MachineReading before = machine.read();
-    machine.stolenS += 0.6;
-    machine.workerS += 10.0;
-    machine.busyS += 10.0;
-    machine.idleS += 9.4;
-    EXPECT_THAT(stateOf(before, machine.read()).problems(),
+    const Spent stolen{.busyS = 10.0, .idleS = 9.4, .stolenS = 0.6, .workerS = 10.0};
+    EXPECT_THAT(stolen.state().problems(),
                 ElementsAre("the host took 3 % of the processors' time"));
+    // What any system does of itself, and what is less than the kernel's ticks tell.
+    const Spent little{.busyS = 0.9, .idleS = 18.95, .stolenS = 0.15};
+    EXPECT_THAT(little.state().problems(), IsEmpty());
+    EXPECT_THAT(Spent{.busyS = 0.1}.state().problems(), IsEmpty());
+    EXPECT_EQ(Spent{.busyS = 0.1}.state().sentence(), "") << "nor called quiet";
 }
 
 TEST(MachineState, IsThrottledForHeatOrByALimit) {
