@@ -215,31 +215,6 @@ void waitForFirstCase(const std::string& dir) {
     }
 }
 
-TEST_F(RunCommand, KilledRunResumesToTheSameTables) {
-    const std::string config = writeMockConfig(folder, kSixCases);
-    const std::string whole = folder.path() / "whole";
-    const std::string killed = folder.path() / "killed";
-    ASSERT_EQ(mockGfxrepro({"run", config, "--out", whole}).exitCode, 0);
-    BackgroundProgram run(
-        {GFXREPRO_MOCK_PROGRAM, "run", config, "--device", "software", "--out", killed});
-    waitForFirstCase(killed);
-    run.signal(SIGKILL);
-    EXPECT_EQ(run.wait().exitCode, 128 + SIGKILL);
-    const std::size_t finished = rowsOf(killed, "number").size();
-    EXPECT_LT(finished, 6U);
-    EXPECT_EQ(mockGfxrepro({"table", killed}).exitCode, 4);
-
-    const ProcessResult resumed = endedWith(0, mockGfxrepro({"run", "--resume", killed}));
-    const std::string left = std::to_string(6 - finished);
-    EXPECT_EQ(resumed.out,
-              left + " of " + left + " finished; records: " + killed + "/records.csv\n");
-    for (const std::string& each : {whole, killed}) {
-        EXPECT_EQ(mockGfxrepro({"table", each}).exitCode, 0);
-    }
-    EXPECT_EQ(readFile(killed + "/tables/sweep-mock.csv"),
-              readFile(whole + "/tables/sweep-mock.csv"));
-}
-
 TEST_F(RunCommand, InterruptedRunIsResumable) {
     const std::string config = writeMockConfig(folder, kSixCases);
     BackgroundProgram run(

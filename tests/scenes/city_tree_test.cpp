@@ -152,7 +152,6 @@ TEST(Tree, ALeafMayBeOnePolygon) {
 
 TEST(CityAndTree, AnotherSeedIsAnotherScene) {
     for (const char* name : {"city", "tree"}) {
-        EXPECT_EQ(digestOf(grown(name, 12'000, 1)), digestOf(grown(name, 12'000, 1)));
         EXPECT_NE(digestOf(grown(name, 12'000, 1)), digestOf(grown(name, 12'000, 2)));
     }
 }

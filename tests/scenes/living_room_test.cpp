@@ -199,15 +199,11 @@ std::string digestOfRoom(const Scene& scene) {
     return sha256(digests);
 }
 
-TEST(LivingRoom, SameSeedSameBytesAndOtherSeedsOthers) {
-    const std::string small = "{diffuse_triangles: 60000}";
-    EXPECT_EQ(digestOfRoom(room(small, 1)), digestOfRoom(room(small, 1)));
-    EXPECT_NE(digestOfRoom(room(small, 1)), digestOfRoom(room(small, 2)));
-}
-
 TEST(LivingRoom, SameBytesOnEveryMachine) {
     EXPECT_EQ(digestOfRoom(theRoom()),
               "3f18cec2a9e562f524de854e3ac06bfa126bdf2dd0d8001db5a08f44af6883d8");
+    const std::string small = "{diffuse_triangles: 60000}";
+    EXPECT_NE(digestOfRoom(room(small, 1)), digestOfRoom(room(small, 2)));
 }
 
 TEST(LivingRoom, BadParametersAreLocated) {

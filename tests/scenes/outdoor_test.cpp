@@ -81,18 +81,14 @@ TEST(NestAndGrass, DefaultsAreThePrintedCounts) {
     EXPECT_EQ(generated("grass", "{}").triangleCount(), 56'000U);
 }
 
-TEST(NestAndGrass, SameSeedSameBytes) {
-    for (const char* generator : {"bird_nest", "grass"}) {
-        EXPECT_EQ(digestOf(sized(generator, 20'000)), digestOf(sized(generator, 20'000)));
-        EXPECT_NE(digestOf(sized(generator, 20'000)), digestOf(sized(generator, 20'000, 2)));
-    }
-}
-
 TEST(NestAndGrass, SameBytesOnEveryMachine) {
     EXPECT_EQ(digestOf(sized("bird_nest", 67'000)),
               "e12dfc037613eb3f31a8e0ad13b0d1ce3b661ddcf6f98b7fcb6b09933cf29fd0");
     EXPECT_EQ(digestOf(sized("grass", 56'000)),
               "cbb08cb1c24364a30e4d71bdabf41d71079b9ea8adca3018bd55c6d29f587305");
+    for (const char* generator : {"bird_nest", "grass"}) {
+        EXPECT_NE(digestOf(sized(generator, 20'000)), digestOf(sized(generator, 20'000, 2)));
+    }
 }
 
 TEST(BirdNest, PartsAreClosedAndFaceOutwards) {

@@ -18,19 +18,13 @@ TEST(ShadowScenes, MeshesAreSound) {
     }
 }
 
-TEST(ShadowScenes, SameSeedSameBytes) {
-    for (const char* name : {"object_on_plane", "town_square"}) {
-        EXPECT_EQ(digestOf(generated(name, "{}")), digestOf(generated(name, "{}"))) << name;
-    }
-    EXPECT_NE(digestOf(generated("town_square", "{}", 1)),
-              digestOf(generated("town_square", "{}", 2)));
-}
-
 TEST(ShadowScenes, SameBytesOnEveryMachine) {
     EXPECT_EQ(digestOf(generated("object_on_plane", "{}")),
               "d1f5559e429724dbcb54bc36aed6b0d5186ff9e334afecfe591bca3255203e57");
     EXPECT_EQ(digestOf(generated("town_square", "{}")),
               "cd3cfd1d40cd8b70f727dcbe3d7d3b1f0bdc4777e4c15bb06df23445fd8e43e7");
+    EXPECT_NE(digestOf(generated("town_square", "{}", 1)),
+              digestOf(generated("town_square", "{}", 2)));
 }
 
 TEST(ObjectOnPlane, TheShapeStandsOnThePlaneAndPlatesFloatAboveIt) {
