@@ -1,6 +1,5 @@
 #include "techniques/point_splatting/point_model.h"
 
-#include <gtest/gtest.h>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,4 @@
 // Claims that noisy pictures have the expectation of their truth.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"

@@ -1,8 +1,6 @@
 // What other machines are told: commands and scripts word by word, and how the queue is read.
 #include "runner/cluster/submission.h"
 
-#include <gtest/gtest.h>
-
 #include "engine/core/files.h"
 #include "engine/core/text.h"
 #include "runner/cluster/predictions.h"

@@ -1,6 +1,5 @@
 #include "runner/report/writers.h"
 
-#include <gtest/gtest.h>
 #include <regex>
 #include <set>
 

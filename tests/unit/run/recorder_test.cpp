@@ -1,4 +1,3 @@
-#include <gtest/gtest.h>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <map>

@@ -1,6 +1,5 @@
 #include "runner/tables/figure.h"
 
-#include <gtest/gtest.h>
 #include <cmath>
 
 #include "runner/tables/nearness.h"
