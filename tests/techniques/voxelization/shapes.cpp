@@ -1,10 +1,11 @@
 #include "tests/techniques/voxelization/shapes.h"
-#include "tests/support/grid.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <map>
+
+#include "tests/support/grid.h"
 
 namespace gfxrepro::voxelization::shapes {
 

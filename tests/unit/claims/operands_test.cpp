@@ -1,8 +1,8 @@
 // Claims that noisy pictures have the expectation of their truth.
 
+#include "runner/claims/kinds/operands.h"
 #include "engine/core/text.h"
 #include "runner/claims/claims.h"
-#include "runner/claims/kinds/operands.h"
 #include "tests/support/support.h"
 #include "tests/unit/tables/fixture.h"
 
