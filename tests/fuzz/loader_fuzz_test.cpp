@@ -296,27 +296,40 @@ scene::Scene smallScene() {
     return scene;
 }
 
-TEST(LoaderFuzz, Ply) {
-    const TemporaryFolder own;
+struct LoaderFuzz : testing::Test {
+    /// Each with mutations of its own in each round.
+    template <class Paths>
+    void fuzzAll(const Load& load, const Paths& paths, int rounds = 1) {
+        for (const fs::path path : paths) {
+            for (int round = 0; round < rounds; ++round) fuzz(load, path, ++number, work.path());
+        }
+    }
+    /// Those of the folder with one of these extensions, too.
+    static std::vector<fs::path> withSeeds(const std::string& folder,
+                                           const std::vector<fs::path>& own,
+                                           std::initializer_list<const char*> extensions) {
+        std::vector<fs::path> all = seeds(folder, own);
+        std::erase_if(all, [&](const fs::path& path) { return !hasExtension(path, extensions); });
+        return all;
+    }
+
+    const TemporaryFolder own, work;
+    std::uint64_t number = 0;
+};
+
+TEST_F(LoaderFuzz, Ply) {
     scene::savePly(own.path() / "binary.ply", smallScene());
     own.write("ascii.ply",
               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
               "property float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
               "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
               "0 0 0 255 0 0\n1 0 0 0 255 0\n0 1 0 0 0 255\n3 0 1 2\n");
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed :
-         seeds("ply", {own.path() / "binary.ply", own.path() / "ascii.ply"})) {
-        if (hasExtension(seed, {".ply"})) {
-            // These are small, and the format is our own parser's: more of them.
-            for (int round = 0; round < 2; ++round) fuzz(kLoadPly, seed, ++number, work.path());
-        }
-    }
+    // These are small, and the format is our own parser's: more of them.
+    fuzzAll(kLoadPly,
+            withSeeds("ply", {own.path() / "binary.ply", own.path() / "ascii.ply"}, {".ply"}), 2);
 }
 
-TEST(LoaderFuzz, Obj) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, Obj) {
     own.write("a.mtl", "newmtl a\nKd 1 0 0\nd 0.5\nNs 10\n");
     const fs::path seed =
         own.write("a.obj",
@@ -325,17 +338,10 @@ TEST(LoaderFuzz, Obj) {
                   "v 1 1 0\nv 0.1 0.1 0\nf 1 2 5 4 3\nf 2 5 3 4\n");
     const fs::path far =
         own.write("far.obj", "v 500000.1 1 2\nv 500000.2 1 2\nv 500000.15 2 2\nv 0 0 0\nf 1 2 3\n");
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& each : seeds("obj", {seed, far})) {
-        if (hasExtension(each, {".obj"})) {
-            for (int round = 0; round < 2; ++round) fuzz(kLoadObj, each, ++number, work.path());
-        }
-    }
+    fuzzAll(kLoadObj, withSeeds("obj", {seed, far}, {".obj"}), 2);
 }
 
-TEST(LoaderFuzz, OffAndStl) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, OffAndStl) {
     std::string binary(80, ' ');
     binary += std::string("\2\0\0\0", 4);
     const float facet[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -351,16 +357,10 @@ TEST(LoaderFuzz, OffAndStl) {
                   "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
                   "vertex 0 1e0 0\nendloop\nendfacet\nendsolid a\n"),
         own.write("binary.stl", binary)};
-    const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : all) {
-        for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
-    }
+    fuzzAll([](const fs::path& path) { expectConsistent(scene::loadScene(path)); }, all, 2);
 }
 
-TEST(LoaderFuzz, Clouds) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, Clouds) {
     // LAS 1.4: a record before two points of format 8, far from the origin.
     std::string las(375 + 60 + 2 * 38, '\0');
     const auto put = [&](std::size_t at, auto value) {
@@ -385,13 +385,8 @@ TEST(LoaderFuzz, Clouds) {
                   "//X Y Z Intensity R G B Nx Ny Nz\n500000.1 1 2 7 255 0 9 0 0 1\n"
                   "500000.2 2 2 7 255 0 9 0 0.6 0.8\n"),
         own.write("plain.xyz", "2\n# of\n0.5,1,2,255,128,0\n1,nan,2,0,0,1\n")};
-    const Load load = [](const fs::path& path) { expectConsistent(scene::loadScene(path)); };
     for (const fs::path& seed : all) EXPECT_FALSE(scene::loadScene(seed).points.colors.empty());
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : all) {
-        for (int round = 0; round < 2; ++round) fuzz(load, seed, ++number, work.path());
-    }
+    fuzzAll([](const fs::path& path) { expectConsistent(scene::loadScene(path)); }, all, 2);
 }
 
 /// A triangle with a joint for each corner and a morph target.
@@ -406,8 +401,7 @@ constexpr std::string_view kPosedGltf = R"({"asset":{"version":"2.0"},"scenes":[
  "WEIGHTS_0":2},"targets":[{"POSITION":0,"NORMAL":0}]}]}],"skins":[{"joints":[1,2]}],
 "nodes":[{"mesh":0,"skin":0},{"translation":[500000,0,4e6]},{"children":[3]},{"scale":[2,2,2]}]})";
 
-TEST(LoaderFuzz, Gltf) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, Gltf) {
     scene::saveGlb(own.path() / "a.glb", smallScene());
     const float positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
     const std::uint8_t joints[] = {0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
@@ -418,38 +412,22 @@ TEST(LoaderFuzz, Gltf) {
     own.write("posed triangle.bin", bytes(positions) + bytes(joints) + bytes(weights));
     const fs::path posed = own.write("posed.gltf", kPosedGltf);
     EXPECT_EQ(scene::loadGltf(posed).triangleCount(), 1U);
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : seeds("gltf", {own.path() / "a.glb", posed})) {
-        if (hasExtension(seed, {".gltf", ".glb"})) fuzz(kLoadGltf, seed, ++number, work.path());
-    }
+    const std::vector<fs::path> both = {own.path() / "a.glb", posed};
+    fuzzAll(kLoadGltf, withSeeds("gltf", both, {".gltf", ".glb"}));
     fs::create_symlink(own.path() / "posed triangle.bin", work.path() / "posed triangle.bin");
-    for (int round = 0; round < 100; ++round) {
-        fuzz(kLoadGltf, own.path() / "a.glb", ++number, work.path());
-        fuzz(kLoadGltf, posed, ++number, work.path());
-    }
+    fuzzAll(kLoadGltf, both, 100);
 }
 
-TEST(LoaderFuzz, Png) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, Png) {
     image::writePng(own.path() / "a.png", image::Image16(9, 5, 3, 1234));
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : seeds("png", {own.path() / "a.png"})) {
-        fuzz(kReadPng, seed, ++number, work.path());
-    }
+    fuzzAll(kReadPng, seeds("png", {own.path() / "a.png"}));
 }
 
-TEST(LoaderFuzz, Exr) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, Exr) {
     image::ExrImage exr;
     exr.add(image::ImageF(9, 5, 3, 0.5F), {"R", "G", "B"});
     image::writeExr(own.path() / "a.exr", exr);
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : seeds("exr", {own.path() / "a.exr"})) {
-        fuzz(kReadExr, seed, ++number, work.path());
-    }
+    fuzzAll(kReadExr, seeds("exr", {own.path() / "a.exr"}));
 }
 
 /// 9 × 5 pixels of RGB, in one strip behind the tags.
@@ -468,8 +446,7 @@ std::string smallTiff(const std::string& bytes) {
     return file + word(0, 4) + bytes;
 }
 
-TEST(LoaderFuzz, OtherPictures) {
-    const TemporaryFolder own, work;
+TEST_F(LoaderFuzz, OtherPictures) {
     const std::string bytes(4 * 9 * 5 * 3, '\x40');
     stbi_write_jpg((own.path() / "a.jpg").c_str(), 9, 5, 3, bytes.data(), 90);
     const std::string seeds[] = {
@@ -483,15 +460,11 @@ TEST(LoaderFuzz, OtherPictures) {
         own.write("a.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\x09\0\5\0\x18\0", 18) + bytes),
         own.write("rle.tga", std::string("\0\0\x0b\0\0\0\0\0\0\0\0\0\x09\0\1\0\x08\0\x88\7", 20)),
     };
-    std::uint64_t number = 0;
-    for (const std::string& seed : seeds) {
-        EXPECT_EQ(image::readPicture(seed).width, 9) << seed;
-        for (int round = 0; round < 20; ++round) fuzz(kReadPicture, seed, ++number, work.path());
-    }
+    for (const std::string& seed : seeds) EXPECT_EQ(image::readPicture(seed).width, 9) << seed;
+    fuzzAll(kReadPicture, seeds, 20);
 }
 
-TEST(LoaderFuzz, Configs) {
-    const TemporaryFolder work;
+TEST_F(LoaderFuzz, Configs) {
     std::vector<fs::path> all;
     for (const char* folder : {"smoke", "sweeps", "zju2005"}) {
         for (const auto& entry : fs::directory_iterator(fs::path(GFXREPRO_CONFIGS) / folder)) {
@@ -499,12 +472,10 @@ TEST(LoaderFuzz, Configs) {
         }
     }
     std::sort(all.begin(), all.end());
-    std::uint64_t number = 0;
-    for (const fs::path& seed : all) fuzz(kLoadConfig, seed, ++number, work.path());
+    fuzzAll(kLoadConfig, all);
 }
 
-TEST(LoaderFuzz, FilesOfRuns) {
-    const TemporaryFolder own, work;
+TEST_F(LoaderFuzz, FilesOfRuns) {
     const fs::path records = own.path() / "records.csv";
     records::Record row;
     row.caseId = "0123456789ab";
@@ -523,7 +494,6 @@ TEST(LoaderFuzz, FilesOfRuns) {
     const fs::path plan =
         own.write("plan.json", R"({"a": [1, 2.5e3, "x\u00e9"], "b": {"c": null}})");
     fs::create_directories(work.path() / "images");
-    std::uint64_t number = 0;
     for (int round = 0; round < 20; ++round) {
         fuzz(kReadRecords, records, ++number, work.path());
         fuzz(kReadImages, own.path() / "images/index.csv", ++number, work.path() / "images");
@@ -532,30 +502,22 @@ TEST(LoaderFuzz, FilesOfRuns) {
 }
 
 /// Files of quite another kind, given to every loader.
-TEST(LoaderFuzz, AnythingToAnyLoader) {
-    const TemporaryFolder own;
+TEST_F(LoaderFuzz, AnythingToAnyLoader) {
     const fs::path text = own.write("notes.txt", "v f usemtl ply glTF \x89PNG 1 2 3\n");
     std::vector<fs::path> all = seeds("invalid_misc", {text, own.write("empty", "")});
     const std::vector<fs::path> others = seeds("stl", {});
     all.insert(all.end(), others.begin(), others.end());
-    const TemporaryFolder work;
-    std::uint64_t number = 0;
-    for (const fs::path& seed : all) {
-        for (const Load& load : {kLoadPly, kLoadObj, kLoadGltf, kReadPng, kReadExr}) {
-            fuzz(load, seed, ++number, work.path());
-        }
-    }
+    for (const Load& load : {kLoadPly, kLoadObj, kLoadGltf, kReadPng, kReadExr}) fuzzAll(load, all);
 }
 
 /// In a file of zeros each byte is a face: memory for as many triangles would be twelve times it.
-TEST(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
-    const TemporaryFolder folder;
+TEST_F(LoaderFuzz, FacesWithoutCornersTakeNoMemory) {
     constexpr std::size_t kBytes = 20'000'000;
     const auto path =
-        folder.write("a.ply",
-                     "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
-                     "property float y\nproperty float z\nelement face 19000000\n"
-                     "property list uchar int vertex_indices\nend_header\n");
+        own.write("a.ply",
+                  "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\n"
+                  "property float y\nproperty float z\nelement face 19000000\n"
+                  "property list uchar int vertex_indices\nend_header\n");
     fs::resize_file(path, kBytes);  // nearly all of it a hole
     resetPeakMemory();
     EXPECT_TRUE(scene::loadPly(path).meshes.empty());
