@@ -30,6 +30,14 @@ struct Data : FolderTest {
     std::string refusal(const std::vector<std::string>& arguments) const {
         return refusalOf(mockGfxrepro(arguments), folder);
     }
+    /// A config of numbers that are measured elsewhere.
+    std::string configOf(const std::string& lines, const std::string& name = "t") const {
+        return folder.write(name + ".yaml", "sweep_of: t\ntitle: T\ntechnique: imported\n" + lines);
+    }
+    ProcessResult imports(const std::string& csv, const std::string& config) const {
+        fs::remove_all(dir("t"));
+        return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+    }
     /// "grows holds", … of a run's claims.csv.
     std::vector<std::string> verdicts(const std::string& name) const {
         const std::string text = readFile(dir(name) + "/claims.csv");
@@ -134,21 +142,18 @@ TEST_F(Data, ClaimsOfAConfigAreJudgedOnImportedNumbers) {
 
 /// Errors of two samplers that are alike, over seeds: one of them is nearer by chance.
 TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
-    const std::string config =
-        folder.write("s.yaml",
-                     "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {method: [a, b]}\n"
-                     "layout: {rows: method, columns: {e: {metric: rmse}}}\n"
-                     "claims: {nearer: {says: a is nearer to its truth, order: [a, b], of: e}}\n");
+    const std::string config = configOf(
+        "sweep: {method: [a, b]}\n"
+        "layout: {rows: method, columns: {e: {metric: rmse}}}\n"
+        "claims: {nearer: {says: a is nearer to its truth, order: [a, b], of: e}}\n");
     const auto verdictOf = [&](const std::string& column, int count, double apart) {
         std::string text = "method,metric,value," + column + "\n";
         for (int i = 0; i < count; ++i) {
             text += fmt::format("a,rmse,{},{}\nb,rmse,{},{}\n", 1.0 + 0.1 * (i % 3), 10 * i,
                                 apart + 0.1 * ((i + 1) % 4), 10 * i);
         }
-        fs::remove_all(dir("s"));
-        const std::string csv = folder.write("s.csv", text);
-        mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")});
-        return verdicts("s");
+        imports(folder.write("t.csv", text), config);
+        return verdicts("t");
     };
     for (const char* column : {"seed", "repeat"}) {
         EXPECT_THAT(verdictOf(column, 8, 1.0), Contains("nearer ambiguous")) << column;
@@ -160,28 +165,21 @@ TEST_F(Data, SeedsOfImportedNumbersAreRounds) {
 }
 
 TEST_F(Data, ASweptSeedIsAParameter) {
-    const std::string csv = folder.write("s.csv", "seed,metric,value\n1,rmse,2\n2,rmse,3\n");
-    const std::string config =
-        folder.write("s.yaml",
-                     "sweep_of: s\ntitle: S\ntechnique: imported\nsweep: {seed: [1, 2]}\n"
-                     "layout: {rows: seed, columns: {e: {metric: rmse}}}\n");
-    EXPECT_EQ(mockGfxrepro({"import", csv, "--config", config, "--out", dir("s")}).exitCode, 0);
-    EXPECT_THAT(readFile(dir("s") + "/tables/sweep-s.csv"), HasSubstr("\n2,"));
+    const std::string csv = folder.write("t.csv", "seed,metric,value\n1,rmse,2\n2,rmse,3\n");
+    endedWith(0, imports(csv, configOf("sweep: {seed: [1, 2]}\n"
+                                       "layout: {rows: seed, columns: {e: {metric: rmse}}}\n")));
+    EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.csv"), HasSubstr("\n2,"));
 }
 
 TEST_F(Data, WhatCheckRefusesIsNotImported) {
     const std::string csv = folder.write("t.csv", "samples,metric,value\n4,mse,0.5\n16,mse,0.1\n");
-    const std::string head =
-        "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {samples: [4, 16]}\n"
-        "layout: {rows: samples, columns: {mse: {metric: mse}}}\n";
     const auto refusals = [&](const std::string& lines) {
-        const std::string config = folder.write("t.yaml", head + lines);
+        const std::string config = configOf(
+            "sweep: {samples: [4, 16]}\n"
+            "layout: {rows: samples, columns: {mse: {metric: mse}}}\n" +
+            lines);
         const ProcessResult checked = mockGfxrepro({"check", config});
-        const ProcessResult imported =
-            mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
-        EXPECT_EQ(imported.exitCode, checked.exitCode) << imported.err;
-        EXPECT_EQ(imported.err.find(checked.err), 0U) << imported.err;
-        fs::remove_all(dir("t"));
+        EXPECT_THAT(endedWith(checked.exitCode, imports(csv, config)).err, StartsWith(checked.err));
         return checked.err;
     };
     EXPECT_EQ(refusals("printed: {values: \"samples,mse\\n4,0.5\"}\n"), "");
@@ -198,11 +196,8 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
                                          "m,metric,value,unit,pass\na,err,1,1,p\nb,err,2,1,p\n"
                                          "a,t_ms,1,ms,p\nb,t_ms,2,ms,p\na,n,3,1,\nb,n,4,1,\n");
     const auto errorsOf = [&](const std::string& lines) {
-        fs::remove_all(dir("t"));
-        const std::string config = folder.write(
-            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n" + lines);
         const std::string imported =
-            endedWith(2, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")})).err;
+            endedWith(2, imports(csv, configOf("sweep: {m: [a, b]}\n" + lines))).err;
         for (const char* command : {"table", "claims", "report"}) {
             EXPECT_EQ(endedWith(2, mockGfxrepro({command, dir("t")})).err, imported) << command;
         }
@@ -233,14 +228,13 @@ TEST_F(Data, WhatNoNumberIsCalledIsAnError) {
 
 TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
     const std::string csv = folder.write("t.csv", "m,metric,value\na,err,1\nb,err,2\n");
-    const std::string head = "sweep_of: t\ntitle: T\ntechnique: imported\n";
     const std::string claim = "claims: {c: {says: so, order: [m=a, m=b], of: err}}\n";
-    const std::string config = folder.write("t.yaml", head + "sweep: {m: [a, b]}\n" + claim);
+    const std::string config = configOf("sweep: {m: [a, b]}\n" + claim);
     endedWith(0, mockGfxrepro({"check", config}));
-    endedWith(0, mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")}));
+    endedWith(0, imports(csv, config));
     EXPECT_THAT(verdicts("t"), Contains("c holds"));
     EXPECT_THAT(
-        refusal({"check", folder.write("u.yaml", head + claim)}),
+        refusal({"check", configOf(claim)}),
         HasSubstr("axis of order is m; allowed: an axis of 'sweep', or of 'layout: {rows}'"));
 }
 
@@ -248,30 +242,26 @@ TEST_F(Data, ValuesOfAnAxisAreComparedWithoutALayout) {
 TEST_F(Data, AnImportHasTheFramesOfItsFile) {
     const std::string csv =
         folder.write("t.csv", "m,frame,metric,value\na,0,e,1\nb,0,e,2\na,1,e,9\nb,1,e,2\n");
-    const auto configOf = [&](const char* frame) {
-        return folder.write(
-            "t.yaml",
-            std::string("sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\nlayout: "
-                        "{rows: m, columns: {e: {metric: e, where: {frame: ") +
-                frame + "}}}}\nclaims: {C: {says: so, order: [m=a, m=b], of: e}}\n");
+    const auto ofFrame = [&](const std::string& frame) {
+        return configOf(
+            "sweep: {m: [a, b]}\nlayout: {rows: m, columns: {e: {metric: e, where: "
+            "{frame: " +
+            frame + "}}}}\nclaims: {C: {says: so, order: [m=a, m=b], of: e}}\n");
     };
     for (const auto& [frame, verdict] : {std::pair("0", "C holds"), {"1", "C fails"}}) {
-        const std::string config = configOf(frame);
+        const std::string config = ofFrame(frame);
         endedWith(0, mockGfxrepro({"check", config}));
-        fs::remove_all(dir("t"));
-        mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+        imports(csv, config);
         EXPECT_THAT(verdicts("t"), Contains(verdict)) << frame;
     }
-    EXPECT_EQ(refusal({"import", csv, "--config", configOf("2"), "--out", dir("u")}),
+    EXPECT_EQ(refusal({"import", csv, "--config", ofFrame("2"), "--out", dir("u")}),
               "gfxrepro: DIR/t.yaml:5:59: layout: where.frame is 2; allowed: 0 | 1\n");
 }
 
 /// A claim could mean either.
 TEST_F(Data, AnImportedMetricHasANameOfItsOwn) {
     const std::string config =
-        folder.write("t.yaml",
-                     "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a]}\n"
-                     "layout: {rows: m, columns: {e: {metric: err}}}\n");
+        configOf("sweep: {m: [a]}\nlayout: {rows: m, columns: {e: {metric: err}}}\n");
     for (const char* metric : {"m", "seed", "scene", "frame"}) {
         const std::string csv =
             folder.write("t.csv", fmt::format("m,metric,value\na,err,1\na,{},2\n", metric));
@@ -300,14 +290,10 @@ TEST_F(Data, OneValueASideOfAnImportCannotTell) {
 TEST_F(Data, WhatHasNoSeedDrawsNone) {
     const auto verdictOf = [&](const std::string& csv, const std::string& sweep,
                                const std::string& column, const std::string& claim) {
-        fs::remove_all(dir("t"));
         const std::string config =
-            folder.write("t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]" +
-                                       sweep + "}\nlayout: {rows: m, columns: {c: {" + column +
-                                       "}}}\nclaims: {C: {says: so, " + claim + "}}\n");
-        const ProcessResult result = mockGfxrepro(
-            {"import", folder.write("t.csv", csv), "--config", config, "--out", dir("t")});
-        EXPECT_EQ(result.exitCode, 0) << result.err;
+            configOf("sweep: {m: [a, b]" + sweep + "}\nlayout: {rows: m, columns: {c: {" + column +
+                     "}}}\nclaims: {C: {says: so, " + claim + "}}\n");
+        endedWith(0, imports(folder.write("t.csv", csv), config));
         return verdicts("t").back();
     };
     std::string text = "m,seed,metric,value\na,,n,4\nb,,n,5\n";
@@ -324,9 +310,10 @@ TEST_F(Data, WhatHasNoSeedDrawsNone) {
     EXPECT_EQ(verdictOf(swept, ", seed: " + seeds + ", when: {seed: {m: b}}",
                         "metric: e, where: {seed: " + seeds + "}", "order: [a, b], of: c"),
               "C holds");
-    const std::string without = folder.write(
-        "u.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b], seed: " + seeds +
-                      "}\nlayout: {rows: [m, seed], columns: {c: {metric: e}}}\n");
+    const std::string without =
+        configOf("sweep: {m: [a, b], seed: " + seeds +
+                     "}\nlayout: {rows: [m, seed], columns: {c: {metric: e}}}\n",
+                 "u");
     EXPECT_THAT(
         refusal({"import", folder.write("u.csv", swept), "--config", without, "--out", dir("u")}),
         EndsWith(", or 'when: {seed: …}' in the sweep leaves it without\n"));
@@ -351,33 +338,30 @@ TEST_F(Data, WhatDiffersBesideTheConfigIsRefused) {
                      "a,,x,n,3\nb,,x,n,4\n");
     const std::string trials =
         folder.write("u.csv", "method,trial,metric,value\na,0,e,1\na,1,e,5\nb,0,e,2\nb,1,e,7\n");
-    const auto import = [&](const std::string& lines, const std::string& csv) {
-        fs::remove_all(dir("t"));
-        const std::string config = folder.write(
-            "t.yaml", "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {method: [a, b]" + lines);
-        return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+    const auto swept = [&](const std::string& lines, const std::string& csv) {
+        return imports(csv, configOf("sweep: {method: [a, b]" + lines));
     };
     const std::string how =
         "; what repeats a case has its number in the column 'process', or in 'seed' where each has "
         "random numbers of its own\n";
     EXPECT_THAT(
-        endedWith(2, import("}\nlayout: {rows: method, columns: {e: {metric: e}}}\n", trials)).err,
+        endedWith(2, swept("}\nlayout: {rows: method, columns: {e: {metric: e}}}\n", trials)).err,
         EndsWith("t.yaml:5:1: layout: each number would be taken over trial (0, 1), which is a "
                  "column of the file; allowed: in 'sweep', and as an axis of rows or columns, or "
                  "in a 'where': {trial: [0, 1]} takes its values together" +
                  how));
     EXPECT_FALSE(fs::exists(dir("t")));
     EXPECT_THAT(
-        endedWith(2, import("}\nclaims: {c: {says: so, order: [a, b], of: e}}\n", trials)).err,
+        endedWith(2, swept("}\nclaims: {c: {says: so, order: [a, b], of: e}}\n", trials)).err,
         EndsWith("t.yaml:5:1: claims: rows that are alike in 'sweep' differ by 'trial' (0, 1), a "
                  "column of the file; allowed: in 'sweep', as a parameter" +
                  how));
-    endedWith(0, import("}\nlayout: {rows: method, columns: {n: {metric: n}}}\n", others));
-    endedWith(0, import("}\nclaims: {}\n", trials));
-    endedWith(0, import(", trial: [0, 1]}\nlayout: {rows: method, columns: {e: {metric: e, where: "
-                        "{trial: [0, 1]}}}}\n"
-                        "claims: {c: {says: so, order: [a, b], of: e}}\n",
-                        trials));
+    endedWith(0, swept("}\nlayout: {rows: method, columns: {n: {metric: n}}}\n", others));
+    endedWith(0, swept("}\nclaims: {}\n", trials));
+    endedWith(0, swept(", trial: [0, 1]}\nlayout: {rows: method, columns: {e: {metric: e, where: "
+                       "{trial: [0, 1]}}}}\n"
+                       "claims: {c: {says: so, order: [a, b], of: e}}\n",
+                       trials));
     EXPECT_THAT(readFile(dir("t") + "/tables/sweep-t.md"),
                 HasSubstr("Each number is taken over trial (0, 1)."));
     EXPECT_THAT(verdicts("t"), Contains("c ambiguous"));
@@ -399,11 +383,9 @@ TEST_F(Data, APointOfASweepIsImportedOnce) {
 TEST_F(Data, AWrongValueOfAnImportsWhereIsRefused) {
     const std::string csv = folder.write("t.csv", "m,metric,value\na,e,1\nb,e,2\n");
     const auto refused = [&](const std::string& where) {
-        const std::string config =
-            folder.write("t.yaml",
-                         "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, c]}\n"
-                         "layout: {rows: m, columns: {e: {metric: e, where: " +
-                             where + "}}}\n");
+        const std::string config = configOf(
+            "sweep: {m: [a, c]}\nlayout: {rows: m, columns: {e: {metric: e, where: " + where +
+            "}}}\n");
         return refusal({"import", csv, "--config", config, "--out", dir("t")});
     };
     EXPECT_EQ(refused("{m: d}"),
@@ -416,20 +398,16 @@ TEST_F(Data, AColumnMayHaveAnyName) {
     for (const char* metric : {"Δ", "error (mean)", "err/px", "log2"}) {
         const std::string csv =
             folder.write("t.csv", fmt::format("m,metric,value\na,{0},1\nb,{0},2\n", metric));
-        const auto import = [&](const std::string& bound) {
-            fs::remove_all(dir("t"));
-            const std::string config =
-                folder.write("t.yaml",
-                             "sweep_of: t\ntitle: T\ntechnique: imported\nsweep: {m: [a, b]}\n"
-                             "claims: {c: {says: so, bound: \"" +
-                                 bound + "\", at_most: 3}}\n");
-            return mockGfxrepro({"import", csv, "--config", config, "--out", dir("t")});
+        const auto bounded = [&](const std::string& bound) {
+            return imports(csv, configOf("sweep: {m: [a, b]}\nclaims: {c: {says: so, bound: \"" +
+                                         bound + "\", at_most: 3}}\n"));
         };
-        endedWith(0, import(metric));
-        EXPECT_THAT(verdicts("t"), Contains("c holds")) << metric;
-        endedWith(0, import(fmt::format("log2 ('{}') + 1", metric)));
-        EXPECT_THAT(verdicts("t"), Contains("c holds")) << metric;
-        EXPECT_THAT(endedWith(2, import(fmt::format("'{}' +", metric))).err,
+        for (const std::string& bound :
+             {std::string(metric), fmt::format("log2 ('{}') + 1", metric)}) {
+            endedWith(0, bounded(bound));
+            EXPECT_THAT(verdicts("t"), Contains("c holds")) << bound;
+        }
+        EXPECT_THAT(endedWith(2, bounded(fmt::format("'{}' +", metric))).err,
                     HasSubstr("t.yaml:5:10: claim 'c': ''" + std::string(metric) +
                               "' +' is no expression: "));
     }
