@@ -186,7 +186,7 @@ TEST_F(Worker, OneThatCannotBeKilledIsLeftBehindAndTheRowSaysSo) {
         WorkerHandle worker(command(isEndless ? "cat /dev/zero >&3" : "sleep 1000"),
                             config::Measure::Lane::Quality, false, phases);
         waitUntilReady(worker);
-        const test::HeldAtItsEnd hold(worker.process().pid());
+        const HeldAtItsEnd hold(worker.process().pid());
         if (!hold.isHeld()) GTEST_SKIP() << "processes cannot be traced here";
         worker.assign({&item, 0});
         const auto result = isEndless ? receive(worker) : worker.checkLimits(Clock::now() + 6s);
@@ -252,7 +252,7 @@ using namespace std::chrono_literals;
 TEST(ChildProcess, OneThatCannotBeKilledIsLeftBehind) {
     ChildProcess child({"/bin/sleep", "1000"});
     {
-        const test::HeldAtItsEnd hold(child.pid());
+        const HeldAtItsEnd hold(child.pid());
         if (!hold.isHeld()) GTEST_SKIP() << "processes cannot be traced here";
         const auto begin = std::chrono::steady_clock::now();
         EXPECT_FALSE(child.kill());
