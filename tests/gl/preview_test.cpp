@@ -4,6 +4,7 @@
 #include "engine/core/files.h"
 #include "engine/gpu_scene/gpu_mesh.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/rectangle.h"
 
 namespace gfxrepro::test {
 namespace {
@@ -13,14 +14,6 @@ using scene::Scene;
 struct PreviewTest : GlTest {
     gl::ShaderLibrary shaders{dataFolder("shaders")};
 };
-
-/// A square of side 2 in the plane z = 0, facing +z.
-scene::Mesh square() {
-    scene::Mesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
 
 /// Looks at the origin from +z so that the square fills the middle half of the image's height.
 scene::Camera frontCamera() {
@@ -48,7 +41,7 @@ float facingAt(int x, int y) {
 constexpr glm::vec3 kBackground{0.18F, 0.20F, 0.24F};
 
 TEST_F(PreviewTest, ShadesBaseColourUnderAHeadlight) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.materials.emplace_back();
     scene.materials[0].baseColor = {0.5F, 0.25F, 1.0F, 1.0F};
     scene.materials[0].emissive = {0.0F, 0.125F, 0.0F};
@@ -64,7 +57,7 @@ TEST_F(PreviewTest, ShadesBaseColourUnderAHeadlight) {
 }
 
 TEST_F(PreviewTest, InterpolatedNormalsAreNormalizedAndEitherSideIsLit) {
-    scene::Mesh mesh = square();
+    scene::Mesh mesh = rectangle();
     mesh.normals.assign(4, glm::vec3(0, 0, -1));  // away from the camera: |N·V| is the same
     const image::ImageF image =
         gpu_scene::renderPreview(scene::sceneOf(mesh), frontCamera(), 32, 32, shaders);
@@ -72,7 +65,7 @@ TEST_F(PreviewTest, InterpolatedNormalsAreNormalizedAndEitherSideIsLit) {
 }
 
 TEST_F(PreviewTest, TransformsInstancesAndTheirNormals) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     // Half as wide, twice as high and deep: the normal must not follow the scaling.
     scene.instances[0].worldFromMesh = glm::mat4(0.5F);
     scene.instances[0].worldFromMesh[1][1] = 2.0F;
@@ -87,7 +80,7 @@ TEST_F(PreviewTest, TransformsInstancesAndTheirNormals) {
 }
 
 TEST_F(PreviewTest, SamplesTexturesWithTheirFirstRowOnTopAndCutsOut) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.meshes[0].texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};  // v grows downwards
     scene.meshes[0].material = 0;
     image::Image8 texture(2, 2, 4, 255);
@@ -108,7 +101,7 @@ TEST_F(PreviewTest, SamplesTexturesWithTheirFirstRowOnTopAndCutsOut) {
 }
 
 TEST_F(PreviewTest, TexturesAreDecodedFromSrgb) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.meshes[0].texcoords.assign(4, glm::vec2(0.5F));
     scene.meshes[0].material = 0;
     scene.textures = {image::Image8(1, 1, 3, 188)};
@@ -119,7 +112,7 @@ TEST_F(PreviewTest, TexturesAreDecodedFromSrgb) {
 
 TEST_F(PreviewTest, TexturesAreReadAsTheirSamplingSays) {
     using Wrap = scene::Sampling::Wrap;
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.meshes[0].texcoords = {{0, 0}, {4, 0}, {4, 0.4F}, {0, 0.4F}};
     scene.meshes[0].material = 0;
     scene.materials.emplace_back().baseColor = glm::vec4(1.0F);
@@ -139,9 +132,9 @@ TEST_F(PreviewTest, TexturesAreReadAsTheirSamplingSays) {
 }
 
 TEST_F(PreviewTest, CutOutsShowWhatIsBehind) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.meshes[0].material = 0;
-    scene.meshes.push_back(square());
+    scene.meshes.push_back(rectangle());
     scene.meshes[1].material = 1;
     scene.instances.push_back({1, glm::mat4(1.0F)});
     scene.instances[1].worldFromMesh[3] = {0, 0, -0.5F, 1};
@@ -156,7 +149,7 @@ TEST_F(PreviewTest, CutOutsShowWhatIsBehind) {
 }
 
 TEST_F(PreviewTest, VertexNormalsShadeAndZeroOnesAreTheTriangles) {
-    scene::Mesh mesh = square();
+    scene::Mesh mesh = rectangle();
     mesh.normals.assign(4, glm::vec3(0.6F, 0, 0.8F));
     const image::ImageF turned =
         gpu_scene::renderPreview(scene::sceneOf(mesh), frontCamera(), 31, 31, shaders);
@@ -168,9 +161,9 @@ TEST_F(PreviewTest, VertexNormalsShadeAndZeroOnesAreTheTriangles) {
 }
 
 TEST_F(PreviewTest, VertexColoursAreAFactorOfTheirMeshAlone) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     scene.meshes[0].colors.assign(4, {0.5F, 0.25F, 1.0F});
-    scene.meshes.push_back(square());  // without colours, behind the first and wider
+    scene.meshes.push_back(rectangle());  // without colours, behind the first and wider
     scene.instances.push_back({1, glm::mat4(1.0F)});
     scene.instances[1].worldFromMesh[0][0] = 1.5F;
     scene.instances[1].worldFromMesh[3] = {0, 0, -1e-3F, 1};
@@ -181,7 +174,7 @@ TEST_F(PreviewTest, VertexColoursAreAFactorOfTheirMeshAlone) {
 }
 
 TEST_F(PreviewTest, FacetsFarFromTheOriginKeepTheirShade) {
-    Scene scene = scene::sceneOf(square());
+    Scene scene = scene::sceneOf(rectangle());
     const glm::vec3 far(1000.0F, 2000.0F, -1500.0F);
     scene.instances[0].worldFromMesh[3] = {far, 1};
     scene::Camera camera = frontCamera();
@@ -197,7 +190,7 @@ TEST_F(PreviewTest, AnEmptySceneIsBackground) {
 }
 
 TEST_F(GlTest, GpuMeshHoldsWhatTheMeshHolds) {
-    scene::Mesh mesh = square();
+    scene::Mesh mesh = rectangle();
     mesh.texcoords.assign(4, glm::vec2(0.5F));
     const gpu_scene::GpuMesh gpuMesh(mesh);
     EXPECT_EQ(gpuMesh.triangleCount, 2);
@@ -217,7 +210,7 @@ layout(std430, binding = 0) buffer Counts { uint counts[2]; };
 void main() { atomicAdd(counts[gl_PrimitiveID], 1u); }
 )"}},
                                       gpu_scene::attributeDefines());
-    const gpu_scene::GpuMesh mesh(square());
+    const gpu_scene::GpuMesh mesh(rectangle());
     gl::Buffer counts(8);
     const gl::Framebuffer framebuffer = gl::Framebuffer::withoutAttachments({8, 8});
     framebuffer.bind();

@@ -1,12 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/random.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "tests/support/crossings.h"
+#include "tests/support/rectangle.h"
 #include "tests/techniques/depth_sampling/brute_visibility.h"
-#include "tests/techniques/depth_sampling/visibility_scenes.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -14,6 +15,102 @@ namespace {
 using kit::View;
 using raycast::Faces;
 using raycast::RayTracer;
+
+glm::vec3 randomPoint(Random& random, float reach) {
+    const float x = random.uniform(-reach, reach);
+    const float y = random.uniform(-reach, reach);
+    return {x, y, random.uniform(-reach, reach)};
+}
+
+scene::Mesh randomTriangles(Random& random, int count) {
+    scene::Mesh mesh;
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+        const glm::vec3 centre = randomPoint(random, 0.8F);
+        for (int corner = 0; corner < 3; ++corner) {
+            mesh.positions.push_back(centre + randomPoint(random, 0.35F));
+        }
+        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    return mesh;
+}
+
+scene::Mesh box(const glm::vec3& half) {
+    scene::Mesh mesh;
+    for (int corner = 0; corner < 8; ++corner) {
+        mesh.positions.push_back(half * glm::vec3((corner & 1) != 0 ? 1 : -1,
+                                                  (corner & 2) != 0 ? 1 : -1,
+                                                  (corner & 4) != 0 ? 1 : -1));
+    }
+    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    return mesh;
+}
+
+/// One-sided and double-sided triangles at random, a box and its mirror image turned and moved, all
+/// within about [−1, 1]³.
+scene::Scene scattered(std::uint64_t seed) {
+    Random random(seed);
+    scene::Scene scene;
+    scene.materials.resize(2);
+    scene.materials[1].isDoubleSided = true;
+    scene.meshes = {randomTriangles(random, 60), randomTriangles(random, 30),
+                    box({0.3F, 0.15F, 0.2F})};
+    scene.meshes[0].material = 0;
+    scene.meshes[1].material = 1;
+    const glm::mat4 one(1.0F);
+    const glm::mat4 turned =
+        glm::rotate(glm::translate(one, randomPoint(random, 0.5F)), 0.7F, glm::vec3(0.6F, 0.8F, 0));
+    const glm::mat4 mirrored =
+        glm::scale(glm::translate(one, randomPoint(random, 0.5F)), glm::vec3(-1.3F, 0.8F, 1.0F));
+    scene.instances = {{2, turned}, {0, one}, {2, mirrored}, {1, one}};
+    return scene;
+}
+
+/// Three views of scattered() from the corners of a triangle before it; their frustums cut it at
+/// the sides, in front and behind.
+std::vector<View> threeViews(int sizePx) {
+    std::vector<View> views;
+    for (const glm::vec3 eye :
+         {glm::vec3(-1.3F, -0.4F, 4), glm::vec3(1.2F, -0.3F, 3.9F), glm::vec3(0.1F, 1.1F, 3.8F)}) {
+        scene::Camera camera;
+        camera.position = eye;
+        camera.target = {0.07F, -0.03F, 0};
+        camera.verticalFovRad = 0.42F;
+        camera.nearM = 3.4F;
+        camera.farM = 4.9F;
+        views.push_back(kit::viewOf(camera, glm::ivec2(sizePx)));
+    }
+    return views;
+}
+
+/// A square of half size `half` facing +z.
+scene::Mesh squareAt(const glm::vec3& centre, float half) {
+    return test::rectangle(centre, {half, 0, 0}, {0, half, 0});
+}
+
+/// After [xie2017] Fig. 11: a wide square A at z = 2, behind it small ones B (z = 0) and C (z = −2)
+/// on the axis, and a wall D behind all. A hides C from everywhere; B hides it from the centre too.
+struct FourObjects {
+    scene::Scene scene;
+
+    FourObjects() {
+        scene.meshes = {squareAt({0, 0, 2}, 1.2F), squareAt({0, 0, 0}, 0.3F),
+                        squareAt({0, 0, -2}, 0.2F), squareAt({0, 0, -5}, 6.0F)};
+        for (int mesh = 0; mesh < 4; ++mesh) scene.instances.push_back({mesh, glm::mat4(1.0F)});
+    }
+    /// From 10 m before the axis, 3 m · `side` beside it.
+    View viewFrom(float side) const {
+        scene::Camera camera;
+        camera.position = {3.0F * side, 0, 10};
+        camera.target = {0, 0, 0};
+        camera.nearM = 1.0F;
+        camera.farM = 30.0F;
+        return kit::viewOf(camera, {32, 32});
+    }
+    SurfacePoint middleOfA() const { return {{0.03F, 0.05F, 2.0F}, 2}; }
+    SurfacePoint middleOfB() const { return {{0.03F, 0.05F, 0.0F}, 4}; }
+    SurfacePoint middleOfC() const { return {{0.03F, 0.05F, -2.0F}, 6}; }
+};
 
 struct Agreement {
     int decided = 0;
@@ -80,25 +177,25 @@ void expectDecided(const Agreement& agreement) {
 }
 
 TEST(Visibility, ConventionalImagesAgreeWithALoopOverTriangles) {
-    expectDecided(expectAgreement(clutter(1), threeViews(24), false));
+    expectDecided(expectAgreement(scattered(1), threeViews(24), false));
 }
 
 TEST(Visibility, NonRedundantImagesAgreeWithALoopOverTriangles) {
-    expectDecided(expectAgreement(clutter(2), threeViews(24), true));
+    expectDecided(expectAgreement(scattered(2), threeViews(24), true));
 }
 
 TEST(Visibility, PeeledLayersAgreeWithALoopOverTriangles) {
     const View view = threeViews(24)[0];
-    expectDecided(expectAgreement(clutter(3), {view, view, view, view}, true));
+    expectDecided(expectAgreement(scattered(3), {view, view, view, view}, true));
 }
 
 TEST(Visibility, ViewsThatComeAgainAgreeWithALoopOverTriangles) {
     const std::vector<View> views = threeViews(20);
-    expectDecided(expectAgreement(clutter(4), {views[0], views[1], views[0], views[1]}, true));
+    expectDecided(expectAgreement(scattered(4), {views[0], views[1], views[0], views[1]}, true));
 }
 
 TEST(Visibility, ConventionalImagesHoldWhatNothingOccludes) {
-    const scene::Scene scene = clutter(5);
+    const scene::Scene scene = scattered(5);
     const RayTracer tracer(scene);
     const std::vector<View> views = threeViews(64);
     const VisibilitySequence sequence(tracer, views, false);
@@ -122,7 +219,7 @@ TEST(Visibility, ConventionalImagesHoldWhatNothingOccludes) {
 }
 
 TEST(Visibility, PeeledLayersAreTheRanksAlongARay) {
-    scene::Scene scene = clutter(6);
+    scene::Scene scene = scattered(6);
     for (scene::Mesh& mesh : scene.meshes) mesh.material = 1;  // double-sided
     const RayTracer tracer(scene);
     View view = threeViews(48)[0];
@@ -158,7 +255,7 @@ TEST(Visibility, PeeledLayersAreTheRanksAlongARay) {
 }
 
 TEST(Visibility, NonRedundantImagesHoldWhatConventionalOnesHoldAndMore) {
-    const scene::Scene scene = clutter(7);
+    const scene::Scene scene = scattered(7);
     const RayTracer tracer(scene);
     const std::vector<View> views = threeViews(64);
     const VisibilitySequence conventional(tracer, views, false);
@@ -190,7 +287,7 @@ TEST(Visibility, NonRedundantImagesHoldWhatConventionalOnesHoldAndMore) {
 }
 
 TEST(Visibility, PointsOfDepthImagesAreFoundAgain) {
-    const scene::Scene scene = clutter(8);
+    const scene::Scene scene = scattered(8);
     const RayTracer tracer(scene);
     const std::vector<View> views = threeViews(64);
     const VisibilitySequence sequence(tracer, views, true);
@@ -251,9 +348,7 @@ TEST(Visibility, OnlyNonRedundantImagesGetTheObjectHiddenFromAllViews) {
 // [xie2017] Sec. 2.1: however many layers are peeled, a wall in the eye's plane is in none of them.
 TEST(Visibility, AWallInThePlaneOfTheEyeIsNeverPeeled) {
     FourObjects objects;
-    scene::Mesh wall;
-    wall.positions = {{0, -1, 3}, {0, -1, 1}, {0, 1, 1}, {0, 1, 3}};
-    wall.triangles = {{0, 1, 2}, {0, 2, 3}};  // faces +x
+    const scene::Mesh wall = test::rectangle({0, 0, 2}, {0, 0, -1}, {0, 1, 0});  // faces +x
     objects.scene.meshes = {wall, squareAt({0, 0, -5}, 6.0F)};
     objects.scene.instances = {{0}, {1}};
     const RayTracer tracer(objects.scene);
@@ -369,7 +464,7 @@ TEST(VisibilityMeasures, AvailabilityOfTwoSquares) {
 }
 
 TEST(VisibilityMeasures, CountsAgreeWithALoopOverTriangles) {
-    const scene::Scene scene = clutter(9);
+    const scene::Scene scene = scattered(9);
     const RayTracer tracer(scene);
     const std::vector<View> views = threeViews(24);
     const std::vector<View> seers{viewFrom(-0.7F), viewFrom(-0.6F), viewFrom(0.5F), viewFrom(6)};

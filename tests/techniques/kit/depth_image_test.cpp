@@ -5,6 +5,7 @@
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/draws.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/rectangle.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 #include "tests/techniques/kit/write_depth_image.h"
 
@@ -15,10 +16,7 @@ constexpr int kSizePx = 16;
 
 /// A square of side 4 across the view from +z at height z, facing +z; it fills the view.
 scene::Mesh squareAt(float z, bool isTurned = false) {
-    scene::Mesh mesh;
-    mesh.positions = {{-2, -2, z}, {2, -2, z}, {2, 2, z}, {-2, 2, z}};
-    mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    scene::Mesh mesh = test::rectangle({0, 0, z}, {2, 0, 0}, {0, 2, 0});
     if (isTurned) mesh.triangles = {{0, 2, 1}, {0, 3, 2}};
     return mesh;
 }

@@ -15,8 +15,11 @@
 #include "techniques/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/grid.h"
+#include "tests/support/rectangle.h"
 
 namespace gfxrepro::reflections {
+
+using test::rectangle;
 
 /// What the G-buffer keeps of a sample's reflectivity.
 inline float reflectivityOf(const HostGBuffer& host, std::size_t index) {
@@ -37,13 +40,10 @@ inline glm::vec3 randomUnit(Random& random) {
     }
 }
 
-/// A square of side 2 in the plane z = 0, facing +z, with texture coordinates: v = 0 at the top.
+/// A square of side 2 in the plane z = 0, facing +z.
 inline scene::Mesh squareMesh() {
-    scene::Mesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+    scene::Mesh mesh = rectangle();
     mesh.normals.assign(4, {0, 0, 1});
-    mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
 }
 

@@ -29,13 +29,6 @@ inline scene::Material mirror(float glossiness = 0.0F) {
     return material;
 }
 
-inline scene::Mesh rectangle(const glm::vec3& centre, const glm::vec3& u, const glm::vec3& v) {
-    scene::Mesh mesh;
-    mesh.positions = {centre - u - v, centre + u - v, centre + u + v, centre - u + v};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
-
 /// The inside of a box: walls −x, +x, −y (the floor), +y, −z, +z are objects 0 to 5.
 inline void addRoom(scene::Scene& scene, const scene::Box& box,
                     const std::vector<scene::Material>& materials) {

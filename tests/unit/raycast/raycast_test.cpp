@@ -11,6 +11,7 @@
 #include "scenes/shared/mesh_builder.h"
 #include "tests/support/crossings.h"
 #include "tests/support/grid.h"
+#include "tests/support/rectangle.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::raycast {
@@ -21,15 +22,6 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Embree's reciprocals differ between processors, by a few units of the last place.
 auto areDistances(const std::vector<float>& expected) {
     return testing::Pointwise(testing::FloatNear(1e-5F), expected);
-}
-
-/// The square [-1, 1]² in the plane z = 0, facing +z.
-scene::Mesh square() {
-    scene::Mesh mesh;
-    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
-    mesh.texcoords = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
 }
 
 scene::Scene body(const std::string& shape, int triangles = 20000) {
@@ -47,7 +39,7 @@ glm::vec3 randomPoint(Random& random, float reach) {
 }
 
 TEST(RayTracer, MeetsAPlaneWhereItIs) {
-    const RayTracer tracer(scene::sceneOf(square()));
+    const RayTracer tracer(scene::sceneOf(test::rectangle()));
     const auto hit = tracer.closestHit({0.5F, -0.25F, 3}, {0, 0, -7});
     ASSERT_TRUE(hit);
     EXPECT_FLOAT_EQ(hit->distance, 3.0F);  // along the unit direction
@@ -66,7 +58,7 @@ TEST(RayTracer, MeetsAPlaneWhereItIs) {
 }
 
 TEST(RayTracer, OcclusionHasEnds) {
-    const RayTracer tracer(scene::sceneOf(square()));
+    const RayTracer tracer(scene::sceneOf(test::rectangle()));
     EXPECT_TRUE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 0.0F, 2.0F));
     EXPECT_FALSE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 0.0F, 0.99F));
     EXPECT_FALSE(tracer.isOccluded({0.3F, 0, 1}, {0, 0, -10}, 1.01F, kInfinity));
@@ -95,7 +87,7 @@ TEST(RayTracer, SphereDistancesMatchTheEquation) {
 }
 
 TEST(RayTracer, InstancesKeepTheirNumbersAndTheirOutside) {
-    scene::Scene scene = scene::sceneOf(square());
+    scene::Scene scene = scene::sceneOf(test::rectangle());
     const glm::mat4 moved = glm::translate(glm::mat4(1.0F), glm::vec3(10, 0, 0));
     scene.instances.push_back({0, glm::scale(moved, glm::vec3(-2, 2, 2))});  // a mirror image
     const RayTracer tracer(scene);
@@ -121,7 +113,7 @@ TEST(RayTracer, AllHitsCountEveryTriangleAndCrossingsEverySurface) {
     EXPECT_TRUE(test::allHits(cube, {-3, 3, 0}, {1, 0, 0}).empty());
 
     // Along the diagonal of two faces: the ray meets both triangles of the shared edge.
-    const RayTracer two(scene::sceneOf(square()));
+    const RayTracer two(scene::sceneOf(test::rectangle()));
     EXPECT_GE(test::allHits(two, {0, 0, 1}, {0, 0, -1}).size(), 1U);
     EXPECT_EQ(test::crossings(two, {0, 0, 1}, {0, 0, -1}).size(), 1U);
     for (int i = 1; i < 100; ++i) {  // never through the crack, never twice
@@ -137,7 +129,7 @@ scene::Scene stackOfSquares() {
     scene.materials.resize(2);
     scene.materials[1].isDoubleSided = true;
     for (const int material : {0, 1, -1}) {
-        scene.meshes.push_back(square());
+        scene.meshes.push_back(test::rectangle());
         scene.meshes.back().material = material;
     }
     const glm::mat4 one(1.0F);
