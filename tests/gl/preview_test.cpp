@@ -4,7 +4,7 @@
 #include "engine/core/files.h"
 #include "engine/gpu_scene/gpu_mesh.h"
 #include "tests/gl/gl_fixture.h"
-#include "tests/support/rectangle.h"
+#include "tests/support/meshes.h"
 
 namespace gfxrepro::test {
 namespace {

@@ -6,8 +6,9 @@
 #include "engine/core/random.h"
 #include "techniques/depth_sampling/visibility.h"
 #include "tests/support/crossings.h"
-#include "tests/support/rectangle.h"
+#include "tests/support/meshes.h"
 #include "tests/techniques/depth_sampling/brute_visibility.h"
+#include "tests/techniques/voxelization/shapes.h"
 
 namespace gfxrepro::depth_sampling {
 namespace {
@@ -16,36 +17,6 @@ using kit::View;
 using raycast::Faces;
 using raycast::RayTracer;
 
-glm::vec3 randomPoint(Random& random, float reach) {
-    const float x = random.uniform(-reach, reach);
-    const float y = random.uniform(-reach, reach);
-    return {x, y, random.uniform(-reach, reach)};
-}
-
-scene::Mesh randomTriangles(Random& random, int count) {
-    scene::Mesh mesh;
-    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
-        const glm::vec3 centre = randomPoint(random, 0.8F);
-        for (int corner = 0; corner < 3; ++corner) {
-            mesh.positions.push_back(centre + randomPoint(random, 0.35F));
-        }
-        mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    }
-    return mesh;
-}
-
-scene::Mesh box(const glm::vec3& half) {
-    scene::Mesh mesh;
-    for (int corner = 0; corner < 8; ++corner) {
-        mesh.positions.push_back(half * glm::vec3((corner & 1) != 0 ? 1 : -1,
-                                                  (corner & 2) != 0 ? 1 : -1,
-                                                  (corner & 4) != 0 ? 1 : -1));
-    }
-    mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
-    return mesh;
-}
-
 /// One-sided and double-sided triangles at random, a box and its mirror image turned and moved, all
 /// within about [−1, 1]³.
 scene::Scene scattered(std::uint64_t seed) {
@@ -53,15 +24,17 @@ scene::Scene scattered(std::uint64_t seed) {
     scene::Scene scene;
     scene.materials.resize(2);
     scene.materials[1].isDoubleSided = true;
-    scene.meshes = {randomTriangles(random, 60), randomTriangles(random, 30),
-                    box({0.3F, 0.15F, 0.2F})};
+    const glm::vec3 half(0.3F, 0.15F, 0.2F);
+    scene.meshes = {test::randomTriangles(60, 0.35F, seed),
+                    test::randomTriangles(30, 0.35F, seed + 10),
+                    voxelization::shapes::cube(-half, half)};
     scene.meshes[0].material = 0;
     scene.meshes[1].material = 1;
     const glm::mat4 one(1.0F);
-    const glm::mat4 turned =
-        glm::rotate(glm::translate(one, randomPoint(random, 0.5F)), 0.7F, glm::vec3(0.6F, 0.8F, 0));
-    const glm::mat4 mirrored =
-        glm::scale(glm::translate(one, randomPoint(random, 0.5F)), glm::vec3(-1.3F, 0.8F, 1.0F));
+    const glm::mat4 turned = glm::rotate(glm::translate(one, test::randomIn(random, -0.5F, 0.5F)),
+                                         0.7F, glm::vec3(0.6F, 0.8F, 0));
+    const glm::mat4 mirrored = glm::scale(glm::translate(one, test::randomIn(random, -0.5F, 0.5F)),
+                                          glm::vec3(-1.3F, 0.8F, 1.0F));
     scene.instances = {{2, turned}, {0, one}, {2, mirrored}, {1, one}};
     return scene;
 }

@@ -4,11 +4,13 @@
 #include <algorithm>
 
 #include "engine/core/files.h"
-#include "engine/core/random.h"
 #include "techniques/kit/depth_image_renderer.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/meshes.h"
 
 namespace gfxrepro::kit {
+
+using test::randomTriangles;
 
 inline scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
     scene::Camera camera;
@@ -26,23 +28,6 @@ inline std::vector<View> threeViews(int sizePx) {
         views.push_back(viewOf(cameraAt({corner, 4.5F}, glm::vec3(0.0F)), glm::ivec2(sizePx)));
     }
     return views;
-}
-
-/// Unconnected triangles in [−1, 1]³, facing anywhere.
-inline scene::Mesh randomTriangles(int count, float size, std::uint64_t seed) {
-    Random random(seed);
-    const auto vector = [&](float extent) {
-        const float x = random.uniform(-extent, extent);
-        const float y = random.uniform(-extent, extent);
-        return glm::vec3(x, y, random.uniform(-extent, extent));
-    };
-    scene::Mesh mesh;
-    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
-        const glm::vec3 centre = vector(1.0F - size);
-        for (int corner = 0; corner < 3; ++corner) mesh.positions.push_back(centre + vector(size));
-        mesh.triangles.push_back(glm::uvec3(3 * i) + glm::uvec3(0, 1, 2));
-    }
-    return mesh;
 }
 
 struct DepthImageTest : test::GlTest {

@@ -5,7 +5,6 @@
 #include "techniques/kit/depth_image.h"
 #include "techniques/kit/draws.h"
 #include "tests/gl/gl_fixture.h"
-#include "tests/support/rectangle.h"
 #include "tests/techniques/kit/depth_image_fixture.h"
 #include "tests/techniques/kit/write_depth_image.h"
 

@@ -15,21 +15,16 @@
 #include "techniques/reflections/gpu_objects.h"
 #include "tests/gl/gl_fixture.h"
 #include "tests/support/grid.h"
-#include "tests/support/rectangle.h"
+#include "tests/support/meshes.h"
 
 namespace gfxrepro::reflections {
 
+using test::randomIn;
 using test::rectangle;
 
 /// What the G-buffer keeps of a sample's reflectivity.
 inline float reflectivityOf(const HostGBuffer& host, std::size_t index) {
     return static_cast<float>((host.surface[index] >> 16) & 0xFFU) / 255.0F;
-}
-
-inline glm::vec3 randomIn(Random& random, float low, float high) {
-    const float x = random.uniform(low, high);
-    const float y = random.uniform(low, high);
-    return {x, y, random.uniform(low, high)};
 }
 
 inline glm::vec3 randomUnit(Random& random) {

@@ -11,7 +11,7 @@
 #include "scenes/shared/mesh_builder.h"
 #include "tests/support/crossings.h"
 #include "tests/support/grid.h"
-#include "tests/support/rectangle.h"
+#include "tests/support/meshes.h"
 #include "tests/support/support.h"
 
 namespace gfxrepro::raycast {
@@ -30,12 +30,6 @@ scene::Scene body(const std::string& shape, int triangles = 20000) {
     values.set("triangles", Node::number(triangles));
     Params params(values, "generator");
     return scene::findGenerator(scene::registeredGenerators(), "sdf_model", {}).generate(params, 1);
-}
-
-glm::vec3 randomPoint(Random& random, float reach) {
-    const float x = random.uniform(-reach, reach);
-    const float y = random.uniform(-reach, reach);
-    return {x, y, random.uniform(-reach, reach)};
 }
 
 TEST(RayTracer, MeetsAPlaneWhereItIs) {
@@ -70,8 +64,8 @@ TEST(RayTracer, SphereDistancesMatchTheEquation) {
     Random random(7);
     int hits = 0;
     for (int i = 0; i < 2000; ++i) {
-        const glm::vec3 origin = 3.0F * glm::normalize(randomPoint(random, 1.0F));
-        const glm::vec3 direction = glm::normalize(randomPoint(random, 1.0F) - origin);
+        const glm::vec3 origin = 3.0F * glm::normalize(test::randomIn(random, -1.0F, 1.0F));
+        const glm::vec3 direction = glm::normalize(test::randomIn(random, -1.0F, 1.0F) - origin);
         const float b = glm::dot(origin, direction);
         const float discriminant = b * b - glm::dot(origin, origin) + 1.0F;
         if (std::abs(discriminant) < 0.02F) continue;  // grazing: the facets decide
@@ -213,8 +207,8 @@ TEST(RayTracer, AgreesOnWhatIsClearlyHit) {
     Random random(11);
     int hits = 0, clear = 0;
     for (int i = 0; i < 5000; ++i) {
-        const glm::vec3 origin = randomPoint(random, 3.0F);
-        const glm::vec3 direction = randomPoint(random, 1.0F) - origin;
+        const glm::vec3 origin = test::randomIn(random, -3.0F, 3.0F);
+        const glm::vec3 direction = test::randomIn(random, -1.0F, 1.0F) - origin;
         const float end = glm::length(direction);
         const auto occluder = tracer.occluder(origin, direction, 0, end, Faces::Drawn, kNoTriangle);
         hits += occluder ? 1 : 0;
@@ -260,8 +254,8 @@ TEST(RayTracer, HitsBetweenAreTheNearestOnesOneBehindTheOther) {
     std::vector<TriangleHit> hits;
     std::size_t most = 0, counted = 0;
     for (int i = 0; i < 2000; ++i) {
-        const glm::vec3 origin = randomPoint(random, 2.0F);
-        const glm::vec3 direction = randomPoint(random, 1.0F);
+        const glm::vec3 origin = test::randomIn(random, -2.0F, 2.0F);
+        const glm::vec3 direction = test::randomIn(random, -1.0F, 1.0F);
         torus.hitsBetween(origin, direction, 0, kInfinity, Faces::All, hits);
         std::vector<float> distances = distancesOf(hits);
         distances.erase(std::unique(distances.begin(), distances.end(),
@@ -313,7 +307,7 @@ TEST(RayTracer, NearestPointsAreOnTheNearestTriangle) {
     const RayTracer tracer(scene);
     Random random(7);
     for (int i = 0; i < 1000; ++i) {
-        const glm::vec3 point = randomPoint(random, 3.0F);
+        const glm::vec3 point = test::randomIn(random, -3.0F, 3.0F);
         const auto hit = tracer.nearest(point);
         ASSERT_TRUE(hit);
         const glm::vec3 clamped = glm::clamp(point, -1.0F, 1.0F), inside = 1.0F - glm::abs(point);
