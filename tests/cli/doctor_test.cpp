@@ -12,8 +12,7 @@ namespace gfxrepro::cli {
 namespace {
 
 DeviceFacts gpu() {
-    DeviceFacts device;
-    device.renderer = "a GPU";
+    DeviceFacts device{.renderer = "a GPU"};
     device.timer.stepNs = 40.0;
     device.maxTextureSizePx = 16384;
     device.max3dTextureSizePx = 2048;

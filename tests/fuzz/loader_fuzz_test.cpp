@@ -283,12 +283,11 @@ bool hasExtension(const fs::path& path, std::initializer_list<const char*> exten
 }
 
 scene::Scene smallScene() {
-    scene::Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}};
-    mesh.normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}};
-    mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-    mesh.triangles = {{0, 1, 2}, {2, 1, 3}};
-    mesh.material = 0;
+    const scene::Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}},
+                           .normals = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                           .texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}},
+                           .triangles = {{0, 1, 2}, {2, 1, 3}},
+                           .material = 0};
     scene::Scene scene = scene::sceneOf(mesh);
     scene.materials.emplace_back().baseColorTexture = 0;
     scene.textures.emplace_back(4, 4, 3, std::uint8_t{9});
@@ -477,11 +476,10 @@ TEST_F(LoaderFuzz, Configs) {
 
 TEST_F(LoaderFuzz, FilesOfRuns) {
     const fs::path records = own.path() / "records.csv";
-    records::Record row;
-    row.caseId = "0123456789ab";
-    row.table = "zju2005/2.1";
-    row.method = R"(a, "b")";
-    row.metric = "psnr_db";
+    const records::Record row{.caseId = "0123456789ab",
+                              .table = "zju2005/2.1",
+                              .method = R"(a, "b")",
+                              .metric = "psnr_db"};
     std::vector<records::Record> rows(3, row);
     rows[1].frame = 1;
     rows[2].process = 1;

@@ -17,11 +17,8 @@ struct PreviewTest : GlTest {
 
 /// Looks at the origin from +z so that the square fills the middle half of the image's height.
 scene::Camera frontCamera() {
-    scene::Camera camera;
-    camera.position = {0, 0, 2};
-    camera.target = {0, 0, 0};
-    camera.verticalFovRad = 2.0F * std::atan(1.0F);
-    return camera;
+    return scene::Camera{
+        .position = {0, 0, 2}, .target = {0, 0, 0}, .verticalFovRad = 2.0F * std::atan(1.0F)};
 }
 
 void expectPixel(const image::ImageF& image, int x, int y, const glm::vec3& expected) {

@@ -110,8 +110,8 @@ TEST_F(ShaderSourceTest, RefusesMalformedDirectives) {
 }
 
 TEST_F(ShaderSourceTest, TranslatesTheLogsOfBothDrivers) {
-    gl::ShaderSource source;
-    source.lines = {{"a.frag.glsl", 1}, {"define k", 0}, {"shared/b.glsl", 7}};
+    const gl::ShaderSource source{
+        .lines = {{"a.frag.glsl", 1}, {"define k", 0}, {"shared/b.glsl", 7}}};
     EXPECT_EQ(gl::translateLog("0:3(12): error: `x' undeclared\n0:1(1): warning: odd\n", source),
               "shared/b.glsl:7: error: `x' undeclared\na.frag.glsl:1: warning: odd");
     EXPECT_EQ(gl::translateLog("0(3) : error C1503: undefined variable \"x\"\n", source),

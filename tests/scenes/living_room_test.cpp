@@ -230,12 +230,11 @@ TEST(IndoorParts, TurnedPartsMeetTheirVolumeAndCount) {
 TEST(IndoorParts, RoundedBoxesAreClosedWithoutAndWithBulge) {
     for (const glm::vec3& bulge : {glm::vec3(0.0F), glm::vec3(0.02F, 0.1F, 0.05F)}) {
         MeshBuilder builder;
-        indoor::RoundedBox box;
-        box.halfSize = {1.0F, 0.4F, 0.6F};
-        box.radius = 0.1F;
-        box.edgeCells = 4;
-        box.faceCells = 6;
-        box.bulge = bulge;
+        const indoor::RoundedBox box{.halfSize = {1.0F, 0.4F, 0.6F},
+                                     .radius = 0.1F,
+                                     .edgeCells = 4,
+                                     .faceCells = 6,
+                                     .bulge = bulge};
         indoor::addRoundedBox(builder, box, indoor::placed({1, 2, 3}, 0.4F));
         EXPECT_EQ(builder.triangleCount(), 12U * 14U * 14U);
         const Mesh mesh = builder.take("box", 0);

@@ -39,8 +39,7 @@ TEST(ObjectOnPlane, TheShapeStandsOnThePlaneAndPlatesFloatAboveIt) {
 }
 
 TEST(FractalTerrain, IsTheSameForASeedAndHasItsRelief) {
-    FractalTerrain shape;
-    shape.sizeSamples = 129;
+    FractalTerrain shape{.sizeSamples = 129};
     const HeightMap a = fractalTerrain(shape, 1);
     EXPECT_EQ(a.heightsM, fractalTerrain(shape, 1).heightsM);
     EXPECT_NE(a.heightsM, fractalTerrain(shape, 2).heightsM);
@@ -52,8 +51,7 @@ TEST(FractalTerrain, IsTheSameForASeedAndHasItsRelief) {
 
 TEST(FractalTerrain, IsTheSameInAFile) {
     const TemporaryFolder folder;
-    FractalTerrain shape;
-    shape.sizeSamples = 129;
+    const FractalTerrain shape{.sizeSamples = 129};
     const HeightMap expected = fractalTerrain(shape, 5);
     for (int i = 0; i < 2; ++i) {  // made, then found
         const HeightMap found = fractalTerrainInFile(shape, 5, folder.path(), "key");

@@ -237,8 +237,7 @@ TEST(KeptVerdicts, ReasonsNameOtherClaimsInWords) {
 TEST(KeptVerdicts, WhatDiffersIsFound) {
     config::Experiment experiment;
     experiment.id = "p/1";
-    config::ClaimSpec claim;
-    claim.id = "A";
+    const config::ClaimSpec claim{.id = "A"};
     experiment.claims = {claim};
     const Kept fails{claims::Verdict::Fails, "software", "quick", "f"};
     const Kept holds{claims::Verdict::Holds, "software", "quick", "h"};

@@ -55,8 +55,7 @@ Topology topologyOf(const Mesh& mesh) {
     const Welding welding = weldedByPosition(mesh.positions);
     const EdgeTable table = edgesOf(mesh.triangles, welding);
     const WeldedTriangles triangles{mesh.triangles, welding};
-    Topology topology;
-    topology.edges = table.firstCorner.size();
+    Topology topology{.edges = table.firstCorner.size()};
     Sets fans(mesh.triangles.size() * 3);
     Sets parts(mesh.triangles.size());
     for (const std::uint32_t first : table.firstCorner) {

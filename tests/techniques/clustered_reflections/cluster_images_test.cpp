@@ -346,8 +346,7 @@ TEST_F(ClusterImagesTest, ImagesHaveNoMoreTexelsThanTheirSamplesAskFor) {
     const GpuObjects objects(scene);
     Random random(6);
     const std::vector<ClusterCamera> cameras = randomCameras(random, 40, 60);
-    CameraSettings settings;
-    settings.texelsPerSample = 8.0F;
+    const CameraSettings settings{.texelsPerSample = 8.0F};
     VisiblePainter painter(shaders(), scene, objects, settings, 0.0F);
     ClusterImages images(shaders(), glm::ivec2(512), false, TexelContent::Triangles);
     draw(painter, objects, OnDevice(cameras), images);

@@ -277,11 +277,10 @@ struct HostCamera {
         glm::dmat4 cameraFromWorld(axes);
         cameraFromWorld[3] = {-(axes * eyeC), 1.0};
 
-        ClusterCamera camera;
-        camera.clipFromWorld = glm::mat4(clipFromCamera * cameraFromWorld);
-        camera.eyeWorld = {glm::vec3(eyeC), plane};
-        camera.planeNormal = {glm::vec3(frame.normal), farDistance};
-        camera.centreWorld = {glm::vec3(frame.centre), shift};
+        ClusterCamera camera{.clipFromWorld = glm::mat4(clipFromCamera * cameraFromWorld),
+                             .eyeWorld = {glm::vec3(eyeC), plane},
+                             .planeNormal = {glm::vec3(frame.normal), farDistance},
+                             .centreWorld = {glm::vec3(frame.centre), shift}};
         const dvec2 size = glm::ceil((box.max - box.min) / p - 1e-3);
         camera.sizePx = glm::ivec2(glm::clamp(size, 1.0, double{kMaxCameraSizePx}));
         camera.reflector =

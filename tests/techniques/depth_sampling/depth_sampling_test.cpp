@@ -25,9 +25,7 @@ struct DepthSamplingTest : test::TechniqueTest {
 };
 
 scene::Camera lookingAt(const glm::vec3& eye, const glm::vec3& target) {
-    scene::Camera camera;
-    camera.position = eye;
-    camera.target = target;
+    scene::Camera camera{.position = eye, .target = target};
     camera.verticalFovRad = 2.0F * std::atan(0.5F);  // an image as high as its distance
     return camera;
 }

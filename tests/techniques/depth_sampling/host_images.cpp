@@ -30,12 +30,11 @@ std::vector<Triangle> randomTriangles(int count, unsigned seed) {
 }
 
 View viewFrom(const glm::vec3& eye, glm::ivec2 sizePx, const glm::vec3& target) {
-    scene::Camera camera;
-    camera.position = eye;
-    camera.target = target;
-    camera.verticalFovRad = glm::radians(45.0F);
-    camera.nearM = 0.05F;
-    camera.farM = 20.0F;
+    const scene::Camera camera{.position = eye,
+                               .target = target,
+                               .verticalFovRad = glm::radians(45.0F),
+                               .nearM = 0.05F,
+                               .farM = 20.0F};
     return kit::viewOf(camera, sizePx);
 }
 

@@ -238,8 +238,7 @@ TEST_F(PixelMeasuresTest, SamplesBehindTheEyeAreNotRedundant) {
 }
 
 TEST_F(PixelMeasuresTest, SamplesOutsideOfTheOtherImageAreNotRedundant) {
-    scene::Camera camera;
-    camera.position = {0, 0, 1};
+    const scene::Camera camera{.position = {0, 0, 1}};
     const auto image = test::filledImage(kit::viewOf(camera, {20, 10}), 2.0F, 1);
     struct Shift {
         glm::vec2 offsetPx;
@@ -352,12 +351,7 @@ TEST_F(PixelMeasuresTest, MarksOfAnotherSizeAreRefused) {
 }
 
 scene::Camera cameraFrom(const glm::vec3& position, const glm::vec3& target = glm::vec3(0.0F)) {
-    scene::Camera camera;
-    camera.position = position;
-    camera.target = target;
-    camera.nearM = 0.5F;
-    camera.farM = 30.0F;
-    return camera;
+    return scene::Camera{.position = position, .target = target, .nearM = 0.5F, .farM = 30.0F};
 }
 
 /// A wall across the view along −z, and a block behind it that shows from the right only.

@@ -13,13 +13,10 @@ namespace {
 
 /// One triangle with this box, seen from (2, 3, 9).
 scene::Scene boxScene(const glm::vec3& low, const glm::vec3& high) {
-    scene::Mesh mesh;
-    mesh.positions = {low, high, {low.x, high.y, low.z}};
-    mesh.triangles = {{0, 1, 2}};
+    const scene::Mesh mesh{.positions = {low, high, {low.x, high.y, low.z}},
+                           .triangles = {{0, 1, 2}}};
     scene::Scene scene = scene::sceneOf(mesh);
-    scene::Camera camera;
-    camera.position = {2, 3, 9};
-    camera.target = {0, 1, 0};
+    const scene::Camera camera{.position = {2, 3, 9}, .target = {0, 1, 0}};
     scene.cameras = {camera};
     return scene;
 }

@@ -45,12 +45,11 @@ std::vector<View> threeViews(int sizePx) {
     std::vector<View> views;
     for (const glm::vec3 eye :
          {glm::vec3(-1.3F, -0.4F, 4), glm::vec3(1.2F, -0.3F, 3.9F), glm::vec3(0.1F, 1.1F, 3.8F)}) {
-        scene::Camera camera;
-        camera.position = eye;
-        camera.target = {0.07F, -0.03F, 0};
-        camera.verticalFovRad = 0.42F;
-        camera.nearM = 3.4F;
-        camera.farM = 4.9F;
+        const scene::Camera camera{.position = eye,
+                                   .target = {0.07F, -0.03F, 0},
+                                   .verticalFovRad = 0.42F,
+                                   .nearM = 3.4F,
+                                   .farM = 4.9F};
         views.push_back(kit::viewOf(camera, glm::ivec2(sizePx)));
     }
     return views;
@@ -73,11 +72,8 @@ struct FourObjects {
     }
     /// From 10 m before the axis, 3 m · `side` beside it.
     View viewFrom(float side) const {
-        scene::Camera camera;
-        camera.position = {3.0F * side, 0, 10};
-        camera.target = {0, 0, 0};
-        camera.nearM = 1.0F;
-        camera.farM = 30.0F;
+        const scene::Camera camera{
+            .position = {3.0F * side, 0, 10}, .target = {0, 0, 0}, .nearM = 1.0F, .farM = 30.0F};
         return kit::viewOf(camera, {32, 32});
     }
     SurfacePoint middleOfA() const { return {{0.03F, 0.05F, 2.0F}, 2}; }
@@ -283,14 +279,11 @@ TEST(Visibility, PointsOfDepthImagesAreFoundAgain) {
 }
 
 TEST(Visibility, SurfacesSeenAtASlantDoNotHideThemselves) {
-    scene::Scene scene;
-    scene.meshes = {squareAt({0, 0, 0}, 1.0F)};
-    scene.instances = {{0, glm::mat4(1.0F)}};
+    const scene::Scene scene{.meshes = {squareAt({0, 0, 0}, 1.0F)},
+                             .instances = {{0, glm::mat4(1.0F)}}};
     const RayTracer tracer(scene);
-    scene::Camera camera;
-    camera.position = {-1.5F, 0.1F, 0.01F};
-    camera.target = {0.3F, 0.2F, 0};
-    camera.up = {0, 0, 1};
+    const scene::Camera camera{
+        .position = {-1.5F, 0.1F, 0.01F}, .target = {0.3F, 0.2F, 0}, .up = {0, 0, 1}};
     const View view = kit::viewOf(camera, {16, 16});
     const VisibilitySequence images(tracer, {view, view}, true);
     // Rounded to 1 µm behind the surface, the ray meets it 0.2 mm before the point.
@@ -365,10 +358,8 @@ TEST(Visibility, FrustumsEndWhatImagesHold) {
 
 /// A square of half size 1 at z = 0 and one of half size 0.5 behind it at z = −1.
 scene::Scene twoSquares() {
-    scene::Scene scene;
-    scene.meshes = {squareAt({0, 0, 0}, 1.0F), squareAt({0, 0, -1}, 0.5F)};
-    scene.instances = {{0, glm::mat4(1.0F)}, {1, glm::mat4(1.0F)}};
-    return scene;
+    return scene::Scene{.meshes = {squareAt({0, 0, 0}, 1.0F), squareAt({0, 0, -1}, 0.5F)},
+                        .instances = {{0, glm::mat4(1.0F)}, {1, glm::mat4(1.0F)}}};
 }
 
 /// From (x, 0, 4), looking at the origin, sees [−2, 2] there.

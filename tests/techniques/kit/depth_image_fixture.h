@@ -13,12 +13,7 @@ namespace gfxrepro::kit {
 using test::randomTriangles;
 
 inline scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
-    scene::Camera camera;
-    camera.position = position;
-    camera.target = target;
-    camera.nearM = 0.5F;
-    camera.farM = 20.0F;
-    return camera;
+    return scene::Camera{.position = position, .target = target, .nearM = 0.5F, .farM = 20.0F};
 }
 
 /// Three views of [−1, 1]³ from the corners of a triangle before it.

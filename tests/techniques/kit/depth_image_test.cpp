@@ -26,8 +26,7 @@ std::vector<View> frontView() {
 
 /// One instance a mesh.
 scene::Scene sceneOf(std::vector<scene::Mesh> meshes) {
-    scene::Scene scene;
-    scene.name = "test";
+    scene::Scene scene{.name = "test"};
     for (scene::Mesh& mesh : meshes) {
         scene.instances.push_back({static_cast<int>(scene.meshes.size()), glm::mat4(1.0F)});
         scene.meshes.push_back(std::move(mesh));
@@ -176,8 +175,7 @@ TEST_F(DepthImageTest, NumbersTrianglesAsTheFlattenedScene) {
 TEST_F(DepthImageTest, ComesBackAsItWasWritten) {
     const std::vector<View> views = frontView();
     DepthImage image(views[0], DepthFormat::Float32);
-    HostDepthImage host;
-    host.view = views[0];
+    HostDepthImage host{.view = views[0]};
     for (unsigned i = 0; i < kSizePx * kSizePx; ++i) {
         host.shading.emplace_back(i % 256, i / 3 % 256, i / 5 % 256, 255);
         host.depthM.push_back(static_cast<float>(i) * 0.37F);

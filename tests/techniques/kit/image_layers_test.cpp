@@ -11,12 +11,11 @@ namespace {
 
 /// From (0, 0, 5) along −z, 90 degrees, depths from 1 to 10.
 View viewOfSize(glm::ivec2 sizePx) {
-    scene::Camera camera;
-    camera.position = {0.0F, 0.0F, 5.0F};
-    camera.target = {0.0F, 0.0F, 0.0F};
-    camera.verticalFovRad = glm::radians(90.0F);
-    camera.nearM = 1.0F;
-    camera.farM = 10.0F;
+    const scene::Camera camera{.position = {0.0F, 0.0F, 5.0F},
+                               .target = {0.0F, 0.0F, 0.0F},
+                               .verticalFovRad = glm::radians(90.0F),
+                               .nearM = 1.0F,
+                               .farM = 10.0F};
     return viewOf(camera, sizePx);
 }
 

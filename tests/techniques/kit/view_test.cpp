@@ -151,10 +151,7 @@ TEST_F(ViewShaderTest, ReprojectsAsTheHostDoes) {
 }
 
 scene::Camera cameraAtX(const std::string& name, float x) {
-    scene::Camera camera;
-    camera.name = name;
-    camera.position = {x, 0, 0};
-    return camera;
+    return scene::Camera{.name = name, .position = {x, 0, 0}};
 }
 
 scene::Scene box() {

@@ -102,10 +102,7 @@ TEST(LinearTree, TheSamePointsGiveTheSameModel) {
 }
 
 TEST(LinearTree, TakesOnePointEqualPointsAndRefusesNone) {
-    scene::PointCloud one;
-    one.positions = {{1, 2, 3}};
-    one.normals = {{0, 1, 0}};
-    one.radii = {0.5F};
+    const scene::PointCloud one{.positions = {{1, 2, 3}}, .normals = {{0, 1, 0}}, .radii = {0.5F}};
     const PointModel model = buildModel(one, {});
     ASSERT_EQ(model.patches.size(), 1U);
     EXPECT_EQ(model.levels.at(0).maxRadius, 0.5F);
@@ -161,8 +158,7 @@ TEST(ModelFile, IsFoundAgainWithTheSameContent) {
 TEST(ModelFile, OtherPointsOrSettingsAreOtherFiles) {
     scene::PointCloud moved = cloud();
     moved.positions[7].x += 1e-6F;
-    TreeSettings settings;
-    settings.minPatchPoints = 100;
+    const TreeSettings settings{.minPatchPoints = 100};
     EXPECT_NE(ModelFile::keyOf(cloud(), {}), ModelFile::keyOf(moved, {}));
     EXPECT_NE(ModelFile::keyOf(cloud(), {}), ModelFile::keyOf(cloud(), settings));
 }

@@ -23,12 +23,7 @@ PointModel sphereModel(int count) {
 }
 
 scene::Camera cameraAt(const glm::vec3& position, const glm::vec3& target) {
-    scene::Camera camera;
-    camera.position = position;
-    camera.target = target;
-    camera.nearM = 0.05F;
-    camera.farM = 100.0F;
-    return camera;
+    return scene::Camera{.position = position, .target = target, .nearM = 0.05F, .farM = 100.0F};
 }
 
 /// Of the nearest of the box's eight corners.
@@ -88,8 +83,7 @@ TEST(PatchSelection, CullsNothingThatIsSeen) {
 TEST(PatchSelection, LevelsProjectSmallEnoughAndNoFinerThanNeeded) {
     const PointModel model = sphereModel(30000);
     std::vector<DrawnPatch> drawn;
-    SelectionSettings settings;
-    settings.silhouetteRad = static_cast<float>(glm::radians(kSilhouetteDeg));
+    SelectionSettings settings{.silhouetteRad = static_cast<float>(glm::radians(kSilhouetteDeg))};
     int fine = 0, coarse = 0;
     double former = 1e9;  // points a patch
     for (const float distance : {3.0F, 6.0F, 12.0F, 24.0F, 48.0F}) {

@@ -20,8 +20,7 @@ namespace {
 
 /// A sphere with bumps: patches of every orientation, some curved.
 scene::Scene bumpySphere(int count) {
-    scene::Scene scene;
-    scene.points = sphere(count);
+    scene::Scene scene{.points = sphere(count)};
     for (glm::vec3& p : scene.points.positions) {
         p *= 1.0F + 0.04F * std::sin(9.0F * p.x) * std::sin(7.0F * p.y);
     }
@@ -404,9 +403,8 @@ TEST_F(PointSplattingTest, RefusesScenesWithoutPoints) {
 }
 
 TEST_F(PointSplattingTest, SaysThatTexturesAreLeftOut) {
-    scene::Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}};
+    const scene::Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                           .triangles = {{0, 1, 2}}};
     scene::Scene scene = sceneOf(mesh);
     scene.name = "t";
     const auto said = [&] {
@@ -467,8 +465,7 @@ TEST(TurntableCamera, HoldsTheBoxFromEverySide) {
     }
     for (const glm::vec3& towardsEye : {glm::vec3(0, 1, 2), glm::vec3(0, 1, 0)}) {
         const scene::Camera framing = scene::framingCamera(box, 1.0F, towardsEye);
-        ViewSettings settings;
-        settings.towardsEye = towardsEye;
+        ViewSettings settings{.towardsEye = towardsEye};
         const scene::Camera camera = turntableCamera(box, 1.0F, settings);
         EXPECT_EQ(camera.position, framing.position);
         EXPECT_EQ(camera.up, framing.up);

@@ -21,13 +21,12 @@ inline constexpr std::array kEwaModes{SplatMode::FullEwa, SplatMode::Reconstruct
 
 /// Looks along −z from (0, 0, distance) at the origin.
 inline PatchView viewFrom(float distance, glm::ivec2 sizePx, float nearM = 0.1F) {
-    scene::Camera camera;
-    camera.position = {0.0F, 0.0F, distance};
-    camera.target = glm::vec3(0.0F);
-    camera.up = {0.0F, 1.0F, 0.0F};
-    camera.verticalFovRad = 0.6F;
-    camera.nearM = nearM;
-    camera.farM = 4.0F * distance;
+    const scene::Camera camera{.position = {0.0F, 0.0F, distance},
+                               .target = glm::vec3(0.0F),
+                               .up = {0.0F, 1.0F, 0.0F},
+                               .verticalFovRad = 0.6F,
+                               .nearM = nearM,
+                               .farM = 4.0F * distance};
     return patchViewOf(camera, sizePx);
 }
 

@@ -65,9 +65,7 @@ TEST(SplatMath, ProjectedAreaBoundsTheCovariance) {
 }
 
 TEST(SplatMath, FiltersAgreeInTheirLimits) {
-    EyeSplat splat;
-    splat.centre = {0.0, 0.0, 2.0};
-    splat.radius = 0.1;
+    EyeSplat splat{.centre = {0.0, 0.0, 2.0}, .radius = 0.1};
     // Facing the eye: a circle of radius · focal / z; the low-pass adds its own square.
     const glm::dmat2 h = ewaCovariance(splat, 100.0, 0.5);
     EXPECT_NEAR(h[0][0], 25.25, 1e-12);

@@ -214,11 +214,7 @@ TEST_F(SplatTest, PointsTakeEightBytesOrSixty) {
 }
 
 scene::PointCloud onePoint(const glm::vec3& position, const glm::vec3& normal, float radius) {
-    scene::PointCloud points;
-    points.positions = {position};
-    points.normals = {normal};
-    points.radii = {radius};
-    return points;
+    return scene::PointCloud{.positions = {position}, .normals = {normal}, .radii = {radius}};
 }
 
 int coveredPixelsOf(const Picture& picture) {

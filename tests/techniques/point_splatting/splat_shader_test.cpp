@@ -17,9 +17,7 @@ struct SplatShaderTest : SplatTest {
 TEST_F(SplatShaderTest, DecodesAsTheHostDoes) {
     constexpr int kCount = 4096;
     Random random(3);
-    scene::Box box;
-    box.min = {-1.0F, 2.0F, -7.0F};
-    box.max = {3.0F, 2.5F, 5.0F};
+    const scene::Box box{.min = {-1.0F, 2.0F, -7.0F}, .max = {3.0F, 2.5F, 5.0F}};
     std::vector<float> table;
     for (int i = 0; i < 256; ++i) table.push_back(0.01F * static_cast<float>(i + 1));
     std::vector<CompressedPoint> points;

@@ -26,8 +26,7 @@ scene::Mesh sphere(const glm::vec3& centre, float radius) {
 /// block and a ball that mirrors.
 scene::Scene mirrorRoom() {
     using reflections::matt;
-    scene::Scene scene;
-    scene.name = "mirror_room";
+    scene::Scene scene{.name = "mirror_room"};
     reflections::addRoom(
         scene, {{-2, -1.5F, -2}, {2, 1.5F, 2}},
         {matt({0.9F, 0.2F, 0.2F}), matt({0.2F, 0.8F, 0.3F}), matt({0.6F, 0.5F, 0.4F}),

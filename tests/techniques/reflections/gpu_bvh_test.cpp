@@ -254,8 +254,7 @@ TEST_F(GpuBvhTest, TellsEqualCentresApartByTheirPlaces) {
     EXPECT_GT(compare(randomRays(5'000)).hits, 50U);
 
     const scene::Mesh one = soup(1, 1.0F, 5);
-    scene::Mesh copies;
-    copies.positions = one.positions;
+    scene::Mesh copies{.positions = one.positions};
     copies.triangles.assign(5000, one.triangles.front());
     pose(scene::sceneOf(copies));
     expectTree();

@@ -242,8 +242,7 @@ TEST_F(EmbreeTracerTest, MovedObjectsAreMetWhereTheyAre) {
 
 /// A floor whose normals lean so far away that mirror rays go through it, to what glows below.
 scene::Scene leaningFloor(float glossiness) {
-    scene::Scene source;
-    source.name = "leaning floor";
+    scene::Scene source{.name = "leaning floor"};
     scene::Mesh floor = rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0});
     floor.normals.assign(floor.positions.size(), glm::normalize(glm::vec3(0.0F, 0.5F, -1.0F)));
     addPart(source, std::move(floor), mirror(glossiness));
@@ -279,8 +278,7 @@ TEST_F(EmbreeTracerTest, RaysBelowTheirTriangleHaveNoWeight) {
 
 /// A wall on a mirror, seen from near: a hundred-thousandth of the diagonal is mirrored, too.
 TEST_F(EmbreeTracerTest, WhatTouchesAMirrorIsMirrored) {
-    scene::Scene source;
-    source.name = "corner";
+    scene::Scene source{.name = "corner"};
     addPart(source, rectangle({0, 0, 0}, {0, 0, 3}, {3, 0, 0}), mirror());
     addPart(source, rectangle({0, 1, 0}, {0, 1, 0}, {3, 0, 0}), glowing({1.0F, 0.5F, 0.0F}));
     scene::Camera near = camera({0.0F, 0.03F, 0.03F}, {0.0F, 0.0F, 0.0006F});
@@ -318,11 +316,10 @@ TEST_F(EmbreeTracerTest, MirrorRaysEndWhereTheyDoWithRadiance) {
 
 /// A mirror floor and a mirror ball among coloured boxes; the boxes move.
 scene::Scene mirrors() {
-    scene::Scene scene;
-    scene.name = "mirrors";
-    scene.materials = {{.name = "plain"},
-                       {.name = "mirror", .metallic = 1.0F, .roughness = 0.0F},
-                       {.name = "glossy", .metallic = 0.9F, .roughness = 0.25F}};
+    scene::Scene scene{.name = "mirrors",
+                       .materials = {{.name = "plain"},
+                                     {.name = "mirror", .metallic = 1.0F, .roughness = 0.0F},
+                                     {.name = "glossy", .metallic = 0.9F, .roughness = 0.25F}}};
     scene::MeshBuilder builder;
     for (int i = 0; i < 40; ++i) {
         const float turn = 0.8F * static_cast<float>(i);

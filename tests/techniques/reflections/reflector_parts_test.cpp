@@ -141,17 +141,15 @@ TEST(ReflectorParts, ThinSidesLeaveAMirrorPlanar) {
 
 TEST(ReflectorParts, NothingAndDegenerateTrianglesAreNoError) {
     EXPECT_EQ(countOf(partsOf({})), 0U);
-    scene::Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 3, 3}};
+    const scene::Mesh mesh{.positions = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                           .triangles = {{0, 1, 2}, {0, 2, 3}, {3, 3, 3}}};
     EXPECT_EQ(partsOf(mesh).ofTriangle.size(), 3U);
 }
 
 TEST(ReflectorParts, BecomeObjectsThatMoveTogether) {
-    scene::Scene scene;
-    scene.name = "test";
-    scene.materials = {{.metallic = 1.0F, .roughness = 0.0F}, {}};
-    scene.meshes = {boxMesh(), boxMesh()};
+    scene::Scene scene{.name = "test",
+                       .meshes = {boxMesh(), boxMesh()},
+                       .materials = {{.metallic = 1.0F, .roughness = 0.0F}, {}}};
     scene.meshes[1].material = 1;  // diffuse: stays whole
     scene.instances = {{1}, {0}, {0}};
     scene.motions = {{.instance = 0}, {.instance = 2}};

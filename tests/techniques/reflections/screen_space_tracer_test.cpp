@@ -14,8 +14,7 @@ constexpr float kThicknessM = 0.3F;
 
 /// Two pillars, a wide one and a thin one, on a mirror; nothing around.
 scene::Scene pillarsOnMirror(float glossiness = 0.0F) {
-    scene::Scene scene;
-    scene.name = "pillars";
+    scene::Scene scene{.name = "pillars"};
     addPart(scene, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror(glossiness));
     addPart(scene, block({glm::vec3(-0.8F, 0.0F, -1.2F), glm::vec3(-0.1F, 1.2F, -0.6F)}),
             matt({0.9F, 0.2F, 0.1F}));
@@ -91,8 +90,7 @@ TEST_F(ScreenSpaceTracerTest, AgreesWithRaysWhereTheEyeSeesWhatIsReflected) {
 /// In the image, a sign near the eye is in front of the wall that the floor shows; the rays pass
 /// far behind it.
 TEST_F(ScreenSpaceTracerTest, RaysPassBehindWhatIsInFrontOfThem) {
-    scene::Scene source;
-    source.name = "sign";
+    scene::Scene source{.name = "sign"};
     addPart(source, rectangle({0, 0, 0}, {0, 0, 2}, {2, 0, 0}), mirror());
     addPart(source, rectangle({0, 2, -1.9F}, {2, 0, 0}, {0, 2, 0}), glowing({0.2F, 0.6F, 0.3F}));
     addPart(source, rectangle({0, 0.75F, 1.2F}, {0.6F, 0, 0}, {0, 0.1F, 0}), glowing({1, 0, 0}));

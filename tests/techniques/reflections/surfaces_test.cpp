@@ -17,8 +17,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 scene::Scene sceneOf(const scene::Mesh& mesh, const scene::Material& material) {
-    scene::Scene scene;
-    scene.name = "test";
+    scene::Scene scene{.name = "test"};
     addPart(scene, mesh, material);
     return scene;
 }
@@ -34,10 +33,9 @@ TEST(ReflectorRuleTest, TakesSmoothMaterials) {
          {Case{0.0F, 1.0F, 1.5F, true, 255, 0}, Case{0.4F, 0.5F, 1.5F, true, 128, 102},
           Case{0.41F, 1.0F, 1.5F, false, 0, 0}, Case{0.2F, 0.0F, 1.5F, true, 10, 51},
           Case{0.2F, 0.0F, 3.0F, true, 64, 51}, Case{0.0F, 0.0F, 1.0F, false, 0, 0}}) {
-        scene::Material material;
-        material.roughness = c.roughness;
-        material.metallic = c.metallic;
-        material.indexOfRefraction = c.indexOfRefraction;
+        const scene::Material material{.metallic = c.metallic,
+                                       .roughness = c.roughness,
+                                       .indexOfRefraction = c.indexOfRefraction};
         const ReflectiveScene scene(sceneOf(squareMesh(), material));
         EXPECT_EQ(scene.reflectorCount(), c.isReflector ? 1 : 0) << c.roughness;
         const Object& object = scene.objects()[0];
@@ -46,8 +44,7 @@ TEST(ReflectorRuleTest, TakesSmoothMaterials) {
         EXPECT_FLOAT_EQ(object.reflectivity, c.s / 255.0F);
         EXPECT_FLOAT_EQ(object.glossiness, c.g / 255.0F);
     }
-    scene::Material rough;
-    rough.roughness = 0.7F;
+    const scene::Material rough{.roughness = 0.7F};
     EXPECT_EQ(
         ReflectiveScene(sceneOf(squareMesh(), rough), {.maxRoughness = 0.7F}).reflectorCount(), 1);
 }
@@ -114,8 +111,7 @@ TEST(ReflectiveSceneTest, DrawsFlatWhatItsFormatSaysIsFlat) {
 }
 
 TEST(ReflectiveSceneTest, LeavesOutWhatLetsLightThrough) {
-    scene::Scene scene;
-    scene.lights = {{}};
+    scene::Scene scene{.lights = {{}}};
     addPart(scene, squareMesh(), {.roughness = 0.0F});
     addPart(scene, squareMesh(), {.transmission = 0.6F});
     addPart(scene, squareMesh(), {.roughness = 0.0F, .transmission = 0.5F},
@@ -143,8 +139,7 @@ TEST(ReflectiveSceneTest, NeedsTrianglesAndReflectors) {
     const auto message = [](const scene::Scene& scene, const ReflectorRule& rule = {}) {
         return errorText([&] { requireReflectors(scene, rule); });
     };
-    scene::Scene empty;
-    empty.name = "void";
+    const scene::Scene empty{.name = "void"};
     EXPECT_EQ(message(empty), "scene 'void': reflections need triangles, it has none");
     EXPECT_EQ(
         message(sceneOf(squareMesh(), {.transmission = 1.0F})),

@@ -13,9 +13,7 @@
 namespace gfxrepro::reflections {
 
 inline scene::Material matt(const glm::vec3& colour) {
-    scene::Material material;
-    material.baseColor = glm::vec4(colour, 1.0F);
-    return material;
+    return scene::Material{.baseColor = glm::vec4(colour, 1.0F)};
 }
 inline scene::Material glowing(const glm::vec3& colour) {
     scene::Material material = matt(glm::vec3(0.0F));
@@ -47,8 +45,7 @@ constexpr glm::vec3 kWallColours[6] = {{0.9F, 0.2F, 0.2F}, {0.2F, 0.8F, 0.3F}, {
                                        {0.8F, 0.8F, 0.8F}, {0.3F, 0.4F, 0.9F}, {0.9F, 0.8F, 0.3F}};
 /// Walls of these colours.
 inline scene::Scene mattRoom(const scene::Box& box) {
-    scene::Scene scene;
-    scene.name = "room";
+    scene::Scene scene{.name = "room"};
     std::vector<scene::Material> materials;
     for (const glm::vec3& colour : kWallColours) materials.push_back(matt(colour));
     addRoom(scene, box, materials);
@@ -72,8 +69,7 @@ struct WallHit {
 };
 inline WallHit wallHit(const scene::Box& box, const glm::dvec3& origin,
                        const glm::dvec3& direction) {
-    WallHit hit;
-    hit.distanceM = std::numeric_limits<double>::infinity();
+    WallHit hit{.distanceM = std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
         if (direction[axis] == 0.0) continue;
         const bool isUpper = direction[axis] > 0.0;
@@ -96,13 +92,11 @@ inline WallHit wallHit(const scene::Box& box, const glm::dvec3& origin,
 }
 
 inline scene::Camera camera(const glm::vec3& position, const glm::vec3& target) {
-    scene::Camera result;
-    result.position = position;
-    result.target = target;
-    result.verticalFovRad = 0.9F;
-    result.nearM = 0.05F;
-    result.farM = 50.0F;
-    return result;
+    return scene::Camera{.position = position,
+                         .target = target,
+                         .verticalFovRad = 0.9F,
+                         .nearM = 0.05F,
+                         .farM = 50.0F};
 }
 
 /// A scene ready to be traced, drawn from one view; `glossiness` is that of all reflectors.

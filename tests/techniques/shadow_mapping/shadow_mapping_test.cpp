@@ -16,10 +16,8 @@ scene::Scene plateOverFloor() {
     builder.addBox({0, -0.05F, 0}, {1.5F, 0.05F, 1.5F});
     builder.addBox({0, 0.7F, 0}, {0.5F, 0.05F, 0.5F});
     scene::Scene scene = scene::sceneOf(builder.take("test", -1));
-    scene::Camera camera;
-    camera.position = {1.0F, 4.0F, 5.0F};
-    camera.target = {0, 0, 0};
-    camera.verticalFovRad = 0.8F;
+    const scene::Camera camera{
+        .position = {1.0F, 4.0F, 5.0F}, .target = {0, 0, 0}, .verticalFovRad = 0.8F};
     scene.cameras = {camera};
     return scene;
 }

@@ -39,19 +39,12 @@ struct ShadowTruthTest : testing::Test {
 
     /// Above the middle of the plate, 64 texels across a right angle.
     static TruthLight pointLight() {
-        TruthLight light;
-        light.position = {0.0F, kLightHeight, 0.0F};
-        light.forward = {0.0F, -1.0F, 0.0F};
-        light.texel = 2.0F / 64.0F;
-        return light;
+        return TruthLight{.position = {0.0F, kLightHeight, 0.0F},
+                          .texel = 2.0F / 64.0F,
+                          .forward = {0.0F, -1.0F, 0.0F}};
     }
 
-    static TruthLight sun() {
-        TruthLight light;
-        light.isDirectional = true;
-        light.texel = 0.1F;
-        return light;
-    }
+    static TruthLight sun() { return TruthLight{.isDirectional = true, .texel = 0.1F}; }
 
     static bool isFloor(const VisiblePoint& point) {
         return point.isSurface() && point.position.y < 0.5F;
@@ -164,9 +157,7 @@ TEST_F(ShadowTruthTest, HalfATermIsLit) {
 }
 
 TEST(TruthLight, TexelsGrowWithTheDistanceAlongTheAxis) {
-    TruthLight light;
-    light.texel = 0.01F;
-    light.forward = {0.0F, 0.0F, -1.0F};
+    TruthLight light{.texel = 0.01F, .forward = {0.0F, 0.0F, -1.0F}};
     EXPECT_FLOAT_EQ(light.texelWidthAt({3.0F, 0.0F, -5.0F}), 0.05F);
     light.forward = glm::vec3(0.0F);  // a cube: the side that the point lies on
     EXPECT_FLOAT_EQ(light.texelWidthAt({7.0F, 0.0F, -5.0F}), 0.07F);
@@ -175,8 +166,7 @@ TEST(TruthLight, TexelsGrowWithTheDistanceAlongTheAxis) {
 }
 
 TEST_F(ShadowTruthTest, PictureHasAColourForEachClass) {
-    ShadowErrors errors;
-    errors.classes = {PixelClass::Acne, PixelClass::Leak};
+    const ShadowErrors errors{.classes = {PixelClass::Acne, PixelClass::Leak}};
     const image::ImageF picture = classPicture(errors, {1, 2});  // rows from the bottom
     EXPECT_GT(picture.at(0, 1, 0), picture.at(0, 1, 1));
     EXPECT_GT(picture.at(0, 0, 1), picture.at(0, 0, 0));

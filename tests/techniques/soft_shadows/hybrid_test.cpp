@@ -260,8 +260,7 @@ TEST_F(HybridTest, TheThresholdCountsInFootprints) {
             images.image.triangleId[3] = 1;
             images.offset.depthM[3] = 10.0F + factor * limitPx * footprint;
             images.offset.triangleId[3] = 2;
-            ReconstructionSettings settings;
-            settings.discontinuityPx = limitPx;
+            const ReconstructionSettings settings{.discontinuityPx = limitPx};
             EXPECT_EQ(std::ranges::count(reconstruct(images, normals, settings).vertices,
                                          images.offset.depthM[3], &CornerVertex::depthM),
                       factor < 1.0F ? 1 : 0);
@@ -285,8 +284,7 @@ std::map<std::pair<int, int>, std::size_t> pixelsOfQuads(const HostMesh& merged)
 
 // The same surface from fewer quads: each sample in one, and only samples of one triangle in it.
 TEST_F(HybridTest, MergedRowsCoverTheSameSamplesInTheSamePlanes) {
-    ReconstructionSettings merging;
-    merging.mergesRows = true;
+    const ReconstructionSettings merging{.mergesRows = true};
     for (const auto& [name, mesh] : meshes()) {
         SCOPED_TRACE(name);
         const scene::Camera camera = scene::framingCamera(mesh.bounds(), 1.2F);
@@ -315,8 +313,7 @@ TEST_F(HybridTest, AWallOfOneTriangleIsAQuadARow) {
         std::ranges::fill(image->triangleId, 1U);
     }
     const std::vector<glm::vec3> normals{glm::vec3(0.0F, 0.0F, 1.0F)};
-    ReconstructionSettings merging;
-    merging.mergesRows = true;
+    const ReconstructionSettings merging{.mergesRows = true};
     const HostMesh merged = reconstruct(images, normals, merging);
     EXPECT_EQ(merged.mesh.sampleCount, 1200U);
     // H ends before the last column's and the last row's outer corners: those keep their quads.

@@ -62,11 +62,7 @@ ImagePair traceImages(const scene::Mesh& mesh, const scene::Camera& camera, glm:
 }
 
 scene::Camera originCamera() {
-    scene::Camera camera;
-    camera.verticalFovRad = 1.57079633F;
-    camera.nearM = 0.1F;
-    camera.farM = 100.0F;
-    return camera;
+    return scene::Camera{.verticalFovRad = 1.57079633F, .nearM = 0.1F, .farM = 100.0F};
 }
 
 namespace reference {

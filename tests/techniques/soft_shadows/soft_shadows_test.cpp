@@ -35,9 +35,7 @@ constexpr const char* kReconstructing[] = {"non_redundant", "conventional", "dep
 
 scene::Scene sceneFrom(scene::MeshBuilder& builder) {
     scene::Scene scene = scene::sceneOf(builder.take("test", -1));
-    scene::Camera camera;
-    camera.position = {1.0F, 4.0F, 5.0F};
-    camera.verticalFovRad = 0.8F;
+    const scene::Camera camera{.position = {1.0F, 4.0F, 5.0F}, .verticalFovRad = 0.8F};
     scene.cameras = {camera};
     return scene;
 }

@@ -19,9 +19,7 @@ namespace gfxrepro::terrain_tessellation {
 
 /// Sums of sines with rough detail: neither flat nor periodic in the tiles.
 inline scene::HeightMap roughMap(int side, float reliefM) {
-    scene::HeightMap map;
-    map.sizeSamples = {side, side};
-    map.spacingM = glm::vec2(1.0F);
+    scene::HeightMap map{.sizeSamples = {side, side}, .spacingM = glm::vec2(1.0F)};
     std::mt19937 random(7);
     for (const auto [row, column] : test::grid(side, side)) {
         const float x = static_cast<float>(column), z = static_cast<float>(row);
@@ -34,13 +32,12 @@ inline scene::HeightMap roughMap(int side, float reliefM) {
 }
 
 inline kit::View viewAt(glm::vec3 eye, glm::vec3 target, glm::ivec2 sizePx = {160, 100}) {
-    scene::Camera camera;
-    camera.position = eye;
-    camera.target = target;
-    camera.up = {0.0F, 1.0F, 0.0F};
-    camera.verticalFovRad = 0.9F;
-    camera.nearM = 0.5F;
-    camera.farM = 2000.0F;
+    const scene::Camera camera{.position = eye,
+                               .target = target,
+                               .up = {0.0F, 1.0F, 0.0F},
+                               .verticalFovRad = 0.9F,
+                               .nearM = 0.5F,
+                               .farM = 2000.0F};
     return kit::viewOf(camera, sizePx);
 }
 
@@ -74,11 +71,10 @@ struct TerrainTest : test::GlTest {
         const int blocks = tile.blocksPerTile(), side = metadata->blocksPerSide(level) / blocks;
         const int span = blocks * metadata->blockSizeSamples(level);
         for (int i = 0; i < side * side; ++i) {
-            Tile added;
-            added.level = level;
-            added.firstBlock = glm::ivec2(i % side, i / side) * blocks;
-            added.originSample = glm::ivec2(i % side, i / side) * span;
-            added.sizeSamples = span;
+            const Tile added{.level = level,
+                             .originSample = glm::ivec2(i % side, i / side) * span,
+                             .sizeSamples = span,
+                             .firstBlock = glm::ivec2(i % side, i / side) * blocks};
             const glm::ivec2 last = map.sizeSamples - 1;
             if (added.originSample.x >= last.x || added.originSample.y >= last.y) continue;
             tiles.push_back(added);

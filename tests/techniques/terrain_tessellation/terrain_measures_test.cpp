@@ -14,12 +14,11 @@ namespace {
 
 /// From 100 m above the origin down onto the plane at `planeM`.
 DepthMap fromAbove(float planeM, glm::ivec2 sizePx = {16, 12}) {
-    scene::Camera camera;
-    camera.position = {0.0F, 100.0F, 0.0F};
-    camera.target = {0.0F, 0.0F, 0.0F};
-    camera.up = {0.0F, 0.0F, -1.0F};
-    camera.nearM = 1.0F;
-    camera.farM = 1000.0F;
+    const scene::Camera camera{.position = {0.0F, 100.0F, 0.0F},
+                               .target = {0.0F, 0.0F, 0.0F},
+                               .up = {0.0F, 0.0F, -1.0F},
+                               .nearM = 1.0F,
+                               .farM = 1000.0F};
     DepthMap map{kit::viewOf(camera, sizePx), {}};
     map.depthM.assign(static_cast<std::size_t>(sizePx.x * sizePx.y), 100.0F - planeM);
     return map;
@@ -135,9 +134,7 @@ TEST(TerrainMeasuresTest, AveragesBlocks) {
 
 scene::Scene terrainScene() {
     scene::Scene scene;
-    scene::HeightMap map;
-    map.sizeSamples = {33, 33};
-    map.spacingM = glm::vec2(10.0F);
+    scene::HeightMap map{.sizeSamples = {33, 33}, .spacingM = glm::vec2(10.0F)};
     for (const auto [row, column] : test::grid(33, 33)) {
         map.heightsM.push_back(static_cast<float>(column + 2 * row));
     }
@@ -164,10 +161,8 @@ TEST(TerrainViewsTest, SpacingsMayDiffer) {
 
 // NW 0, NE 1, SW 1, SE 10: the middle lies on the edge from south-west to north-east.
 TEST(TerrainViewsTest, HeightsOfTheTruthAreItsTriangles) {
-    scene::HeightMap map;
-    map.sizeSamples = {2, 2};
-    map.spacingM = glm::vec2(10.0F);
-    map.heightsM = {0.0F, 1.0F, 1.0F, 10.0F};
+    const scene::HeightMap map{
+        .sizeSamples = {2, 2}, .spacingM = glm::vec2(10.0F), .heightsM = {0.0F, 1.0F, 1.0F, 10.0F}};
     EXPECT_FLOAT_EQ(drawnHeightAt(map, 0.0F, 10.0F), 1.0F);
     EXPECT_FLOAT_EQ(drawnHeightAt(map, 10.0F, 10.0F), 10.0F);
     EXPECT_FLOAT_EQ(drawnHeightAt(map, 2.5F, 2.5F), 0.5F);
@@ -188,9 +183,7 @@ TEST(TerrainViewsTest, FliesAboveTheGround) {
 
 TEST(TerrainViewsTest, TheScenesOwnViewsComeFirst) {
     scene::Scene scene = terrainScene();
-    scene::Camera camera;
-    camera.name = "valley";
-    camera.position = {1.0F, 2.0F, 3.0F};
+    const scene::Camera camera{.name = "valley", .position = {1.0F, 2.0F, 3.0F}};
     scene.cameras.push_back(camera);
     EXPECT_EQ(TerrainView(scene, "valley").camera(0, 1, 1.0F).position, camera.position);
     EXPECT_EQ(errorText([&] { TerrainView(scene, "moon"); }),

@@ -13,9 +13,7 @@ namespace gfxrepro::terrain_tessellation {
 namespace {
 
 scene::HeightMap randomMap(int width, int height) {
-    scene::HeightMap map;
-    map.sizeSamples = {width, height};
-    map.spacingM = glm::vec2(2.0F);
+    scene::HeightMap map{.sizeSamples = {width, height}, .spacingM = glm::vec2(2.0F)};
     Random random(7);
     for (int i = 0; i < width * height; ++i) map.heightsM.push_back(random.uniform(-50.0F, 90.0F));
     return map;
@@ -102,8 +100,7 @@ TEST(TerrainMetadata, NeighboursShareTheirEdgesAndParentsHoldTheirChildren) {
 }
 
 TEST(TerrainMetadata, APlaneHasNoErrorAndOneSampleHasATree) {
-    scene::HeightMap plane;
-    plane.sizeSamples = glm::ivec2(65);
+    scene::HeightMap plane{.sizeSamples = glm::ivec2(65)};
     for (int i = 0; i < 65 * 65; ++i) plane.heightsM.push_back(static_cast<float>(i % 65));
     const TerrainMetadata metadata = TerrainMetadata::build(plane, {8, 4});
     for (const Block& block : metadata.blocks()) EXPECT_EQ(block.whole.errorM, 0.0F);

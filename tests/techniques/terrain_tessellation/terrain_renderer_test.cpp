@@ -116,9 +116,7 @@ TEST_F(FlatTerrainTest, IsDrawnAsThePlaneAndEndsAtItsMapByEveryMethod) {
 
 /// 256 by 256 m of a plane.
 scene::HeightMap inclined(glm::vec2 spacingM) {
-    scene::HeightMap map;
-    map.sizeSamples = glm::ivec2(256.0F / spacingM) + 1;
-    map.spacingM = spacingM;
+    scene::HeightMap map{.sizeSamples = glm::ivec2(256.0F / spacingM) + 1, .spacingM = spacingM};
     for (const auto [row, column] : test::grid(map.sizeSamples.y, map.sizeSamples.x)) {
         const glm::vec2 at = glm::vec2(column, row) * spacingM;
         map.heightsM.push_back(0.5F * at.x + 0.25F * at.y);
@@ -346,8 +344,7 @@ TEST_F(TerrainTest, ThePageOutOfUseForLongestGoes) {
 TEST_F(TerrainTest, FewPagesDrawThePictureOfMany) {
     makeTerrain(roughMap(257, 40.0F));
     const TileTree tree(*metadata, tile);
-    scene::Scene scene;
-    scene.heights = map;
+    const scene::Scene scene{.heights = map};
     const TerrainView flight(scene, "round_flight");
     constexpr std::size_t kBudget = 4 * kPageBytes;
     DeviceTerrain few(map, *metadata, kBudget);

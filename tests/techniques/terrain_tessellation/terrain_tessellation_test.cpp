@@ -14,9 +14,7 @@ namespace {
 /// Waves of several lengths: levels differ.
 scene::Scene terrain(glm::ivec2 size, float amplitudeM = 300.0F) {
     scene::Scene scene;
-    scene::HeightMap map;
-    map.sizeSamples = size;
-    map.spacingM = glm::vec2(10.0F);
+    scene::HeightMap map{.sizeSamples = size, .spacingM = glm::vec2(10.0F)};
     for (const auto [row, column] : test::grid(size.y, size.x)) {
         const double x = column, z = row;
         const double wave = std::sin(0.05 * x) * std::cos(0.04 * z) +
@@ -103,13 +101,12 @@ TEST_F(TerrainTessellationTest, AColourMapLiesOverTheMapNorthOnTop) {
     map.at(0, 0, 0) = map.at(1, 0, 1) = map.at(0, 1, 2) = map.at(1, 1, 2) = 255;
     scene.textures.push_back(map);
     scene.materials.emplace_back().baseColorTexture = 0;
-    scene::Camera above;
-    above.name = "above";
-    above.position = {640.0F, 2000.0F, 641.0F};
-    above.target = {640.0F, 0.0F, 640.0F};
-    above.verticalFovRad = 0.6F;
-    above.nearM = 1.0F;
-    above.farM = 5000.0F;
+    const scene::Camera above{.name = "above",
+                              .position = {640.0F, 2000.0F, 641.0F},
+                              .target = {640.0F, 0.0F, 640.0F},
+                              .verticalFovRad = 0.6F,
+                              .nearM = 1.0F,
+                              .farM = 5000.0F};
     scene.cameras = {above};
     for (const char* method : {"adaptive", "uniform_grid", "cdlod"}) {
         const auto recordedImages =
@@ -364,10 +361,8 @@ TEST_F(TerrainTessellationTest, DrawsWhatAUsersViewHolds) {
 
 TEST_F(TerrainTessellationTest, SeesNothingFromUnderTheGroundAndFarOutside) {
     scene::Scene scene = terrain({129, 129});
-    scene::Camera camera;
-    camera.name = "far";
-    camera.position = {1e6F, 500.0F, 1e6F};
-    camera.target = {2e6F, 500.0F, 2e6F};
+    scene::Camera camera{
+        .name = "far", .position = {1e6F, 500.0F, 1e6F}, .target = {2e6F, 500.0F, 2e6F}};
     scene.cameras.push_back(camera);
     camera.name = "under";
     camera.position = {640.0F, 1.0F, 640.0F};

@@ -19,14 +19,11 @@ constexpr TileSettings kTiles{2, 2};
 constexpr float kMaxErrorPx = 8.0F;
 
 scene::HeightMap hills(int width, int height) {
-    scene::FractalTerrain shape;
-    shape.sizeSamples = std::max(width, height);
-    shape.reliefM = 400.0F;
-    shape.featureM = 800.0F;
+    const scene::FractalTerrain shape{
+        .sizeSamples = std::max(width, height), .reliefM = 400.0F, .featureM = 800.0F};
     scene::HeightMap square = scene::fractalTerrain(shape, 3);
-    scene::HeightMap map;
-    map.sizeSamples = {width, height};
-    map.spacingM = square.spacingM * glm::vec2(1.0F, 1.5F);
+    scene::HeightMap map{.sizeSamples = {width, height},
+                         .spacingM = square.spacingM * glm::vec2(1.0F, 1.5F)};
     for (const auto [row, column] : test::grid(height, width)) {
         map.heightsM.push_back(square.heightM(column, row));
     }
@@ -143,8 +140,7 @@ TEST(TileSelection, ByDistanceCoversOnceAndDividesTheNear) {
 }
 
 TEST(TileSelection, ServesFlatAndTinyMaps) {
-    scene::HeightMap flat;
-    flat.sizeSamples = glm::ivec2(257);
+    scene::HeightMap flat{.sizeSamples = glm::ivec2(257)};
     flat.heightsM.assign(257 * 257, 5.0F);
     const TerrainMetadata flatData = TerrainMetadata::build(flat, {8, 4});
     const TileSelection one =
@@ -154,8 +150,7 @@ TEST(TileSelection, ServesFlatAndTinyMaps) {
     EXPECT_EQ(one.tiles[0].screenErrorPx, 0.0F);
 
     for (const int side : {1, 2}) {
-        scene::HeightMap tiny;
-        tiny.sizeSamples = glm::ivec2(side);
+        scene::HeightMap tiny{.sizeSamples = glm::ivec2(side)};
         tiny.heightsM.assign(static_cast<std::size_t>(side * side), 1.0F);
         const TerrainMetadata tinyData = TerrainMetadata::build(tiny, {8, 4});
         EXPECT_EQ(TileTree(tinyData, kTiles)

@@ -243,8 +243,7 @@ TEST_F(GridShapeTest, CombinedVoxelByVoxel) {
 }
 
 TEST(GridShape, FitsWhatItHolds) {
-    GridSettings settings;
-    settings.layout = WorksheetLayout(300, 1);
+    GridSettings settings{.layout = WorksheetLayout(300, 1)};
     const scene::Box flat{{0.0F, 5.0F, -1.0F}, {526.0F, 22.0F, 328.0F}};
     settings.fitTo(flat, 1);
     EXPECT_EQ(settings.layout.shape(), GridShape(300));

@@ -34,9 +34,9 @@ std::vector<NamedMesh> allMeshes() {
     meshes.push_back({"random triangles", shapes::randomTriangles(400, 11)});
     // In a box of 30 voxels' edge: every face on a voxel's face.
     meshes.push_back({"cube on voxel faces", shapes::cube(glm::vec3(0.0F), glm::vec3(30.0F))});
-    scene::Mesh degenerate;
-    degenerate.positions = {{0, 0, 0}, {1, 1, 1}, {0.5F, 0.5F, 0.5F}, {0.2F, 0.9F, 0.1F}};
-    degenerate.triangles = {{0, 1, 2}, {3, 3, 3}, {0, 3, 3}};
+    const scene::Mesh degenerate{
+        .positions = {{0, 0, 0}, {1, 1, 1}, {0.5F, 0.5F, 0.5F}, {0.2F, 0.9F, 0.1F}},
+        .triangles = {{0, 1, 2}, {3, 3, 3}, {0, 3, 3}}};
     meshes.push_back({"segments and a point", degenerate});
     return meshes;
 }

@@ -180,9 +180,7 @@ TEST_P(VolumeRendering, TransparencyIsTheLengthOfTheRayInFullVoxels) {
     const DenseGrid grid = shell(layout);
     const scene::Camera camera =
         orbitCamera(kBox, GetParam().azimuthDeg, GetParam().elevationDeg, 1.5F);
-    DrawSettings settings;
-    settings.mode = DrawMode::Transparent;
-    settings.opacity = kOpacity;
+    const DrawSettings settings{.mode = DrawMode::Transparent, .opacity = kOpacity};
     VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
     renderer.draw(uploaded(grid), nullptr, nullptr);
     const image::ImageF image = renderer.readImage();
@@ -214,9 +212,7 @@ TEST_F(GlTest, LookUpsDrawTheSamePicture) {
         const WorksheetLayout layout(32, voxelBits);
         const gl::Texture sheets = uploaded(shell(layout));
         for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {
-            DrawSettings settings;
-            settings.mode = mode;
-            settings.opacity = 0.5F;
+            DrawSettings settings{.mode = mode, .opacity = 0.5F};
             const auto drawn = [&] {
                 VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
                 renderer.draw(sheets, nullptr, nullptr);
@@ -235,8 +231,7 @@ TEST_F(GlTest, CutVoxelsAreNotDrawn) {
     const WorksheetLayout layout(32, 1);
     DenseGrid grid(layout);
     forEachVoxel(32, [&](const glm::ivec3& voxel) { grid.set(voxel, 1); });
-    DrawSettings settings;
-    settings.cut = scene::Box{glm::vec3(0.0F, 0.0F, 0.5F), glm::vec3(1.0F)};
+    const DrawSettings settings{.cut = scene::Box{glm::vec3(0.0F, 0.0F, 0.5F), glm::vec3(1.0F)}};
     const scene::Camera camera = orbitCamera(kBox, 10, 5, 1.5F);
     VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
     renderer.draw(uploaded(grid), nullptr, nullptr);
@@ -256,9 +251,7 @@ TEST_F(GlTest, CommonVoxelsOfTwoModelsAreRed) {
     }
     // Blended, too, they are opaque.
     for (const DrawMode mode : {DrawMode::Opaque, DrawMode::Transparent}) {
-        DrawSettings settings;
-        settings.hasSecond = true;
-        settings.mode = mode;
+        const DrawSettings settings{.mode = mode, .hasSecond = true};
         const scene::Camera camera = orbitCamera(kBox, 0, 0, 1.5F);
         VolumeRenderer renderer(shaders(), layout, kBox, camera, kSizePx, settings);
         const gl::Texture secondSheets = uploaded(second);

@@ -30,11 +30,10 @@ Place placeIn(const glm::ivec3& v) {
 
 /// Every seventh voxel or so, in colours of their own.
 VoxelModel sample(const GridShape& shape) {
-    VoxelModel model;
-    model.shape = shape;
-    model.origin = {500000.25, -2, 0.125};
-    model.voxelSize = 0.1;
-    model.source = "a \"model\"";
+    VoxelModel model{.shape = shape,
+                     .origin = {500000.25, -2, 0.125},
+                     .voxelSize = 0.1,
+                     .source = "a \"model\""};
     for (const auto [x, y] : test::grid(shape.size.x, shape.size.y)) {
         for (int z = 0; z < shape.size.z; ++z) {
             if ((x * 31 + y * 17 + z * 3) % 7 > 0 && x != 3) continue;
@@ -282,8 +281,7 @@ TEST(VoxelModel, VoxelsLookAsTheNearestSurface) {
 }
 
 TEST(VoxelModel, TexturesAreReadAsTheyAreDrawn) {
-    scene::Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {4, 0, 0}, {4, 0, 1}, {0, 0, 1}};
+    scene::Mesh mesh{.positions = {{0, 0, 0}, {4, 0, 0}, {4, 0, 1}, {0, 0, 1}}};
     mesh.normals.assign(4, {0, 1, 0});  // against the winding: the file's own counts
     mesh.texcoords = {{-1, 0}, {3, 0}, {3, 1}, {-1, 1}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};

@@ -124,9 +124,7 @@ TEST_F(VoxelizationTest, NeedsTrianglesThatReachSomewhere) {
     cloud.origin.description = "/scans/cloud.ply";
     EXPECT_EQ(errorText([&] { run("{}", cloud); }),
               "scene 'cloud.ply' (/scans/cloud.ply) has no triangles, but 2 points" + allowed);
-    scene::Mesh mesh;
-    mesh.positions = {{1, 2, 3}, {1, 2, 3}};
-    mesh.triangles = {{0, 1, 0}};
+    const scene::Mesh mesh{.positions = {{1, 2, 3}, {1, 2, 3}}, .triangles = {{0, 1, 0}}};
     scene::Scene point = scene::sceneOf(mesh);
     point.name = "point.obj";
     EXPECT_EQ(errorText([&] { run("{}", point); }),

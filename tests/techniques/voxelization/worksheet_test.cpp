@@ -109,9 +109,7 @@ TEST(WorksheetTest, DenseGridHoldsValues) {
 }
 
 TEST(WorksheetTest, RefusesWhatTheDeviceCannotHold) {
-    gl::DeviceLimits limits;
-    limits.maxTextureSizePx = 16384;
-    limits.maxArrayLayers = 2048;
+    gl::DeviceLimits limits{.maxTextureSizePx = 16384, .maxArrayLayers = 2048};
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(512, 32), limits));
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 1), limits));
     EXPECT_NO_THROW(checkFitsDevice(WorksheetLayout(1024, 8), limits));

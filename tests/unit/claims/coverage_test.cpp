@@ -79,10 +79,8 @@ Group groupOf(const std::vector<std::vector<double>>& truths, const std::vector<
 }
 
 ClaimSpec claimOf(const char* kind) {
-    ClaimSpec claim;
-    claim.kind = &*std::ranges::find(kinds(), kind, &Kind::name);
-    claim.operands = {"a", "b"};
-    return claim;
+    return ClaimSpec{.kind = &*std::ranges::find(kinds(), kind, &Kind::name),
+                     .operands = {"a", "b"}};
 }
 
 /// The worst on the groups, all of whose comparisons are looked at together.
@@ -604,10 +602,8 @@ struct Ended {
 };
 
 Ended measure(int cases, double scatter, Random& random) {
-    config::Measure measure;
-    measure.lane = config::Measure::Lane::Timing;
-    measure.processes = 6;
-    measure.timeBudgetS = 60.0;
+    const config::Measure measure{
+        .lane = config::Measure::Lane::Timing, .processes = 6, .timeBudgetS = 60.0};
     tables::FrameTimes times;
     std::vector<tables::Samples> samples(static_cast<std::size_t>(cases));
     Ended ended{false, 0, cases, 0};

@@ -117,8 +117,7 @@ TEST(Shards, TimesOfATableStayTogether) {
 }
 
 TEST(Shards, AllShardsTogetherHaveEachUnitOnce) {
-    run::Plan plan;
-    plan.cases = qualityCases(10);
+    run::Plan plan{.cases = qualityCases(10)};
     plan.cases[3].measure.processes = 2;
     const std::vector<double> timesS = {5, 1, 1, 8, 1, 1, 1, 2, 2, 3};
     std::multiset<std::string> units;
@@ -186,8 +185,7 @@ using cluster::mergeRuns;
 
 /// Four quality cases q/1, then two timing cases t/1.
 run::Plan makePlan() {
-    run::Plan plan;
-    plan.hash = "0123456789abcdef";
+    run::Plan plan{.hash = "0123456789abcdef"};
     for (int size = 1; size <= 4; ++size) plan.cases.push_back(makeCase("q/1", "a", size));
     for (int size = 1; size <= 2; ++size) {
         plan.cases.push_back(makeCase("t/1", "a", size, Lane::Timing));

@@ -16,14 +16,12 @@ using cluster::Predictor;
 using config::Case;
 
 cluster::Submission makeSubmission() {
-    cluster::Submission s;
-    s.name = "zju2005";
-    s.program = "/opt/kept it/gfxrepro";
-    s.runArguments = {"--assets", "/a b", "--jobs", "2"};
-    s.out = "/out put";
-    s.shardCount = 2;
-    s.timeLimitMin = 12;
-    return s;
+    return cluster::Submission{.name = "zju2005",
+                               .program = "/opt/kept it/gfxrepro",
+                               .runArguments = {"--assets", "/a b", "--jobs", "2"},
+                               .out = "/out put",
+                               .shardCount = 2,
+                               .timeLimitMin = 12};
 }
 
 TEST(Submission, QuotesForTheShell) {
@@ -68,8 +66,8 @@ TEST(Submission, ArrayIndices) {
 }
 
 TEST(Submission, TimeLimits) {
-    run::Plan plan;
-    plan.cases = {makeCase("t/1", "a", 1), makeCase("t/1", "a", 2), makeCase("t/1", "a", 3)};
+    run::Plan plan{
+        .cases = {makeCase("t/1", "a", 1), makeCase("t/1", "a", 2), makeCase("t/1", "a", 3)}};
     for (config::Case& item : plan.cases) item.measure.timeLimitS = 3600.0;
     const std::vector<int> shardOf = {0, 1, 1};
     // The second shard: twice 90 s and ten minutes.
@@ -158,8 +156,7 @@ TEST(Predictions, MedianOfTheTechniqueElseOfAll) {
 
 TEST(Predictions, SurviveAFile) {
     const TemporaryFolder folder;
-    run::Plan plan;
-    plan.cases = {makeCase("t/1", "a", 64), makeCase("t/1", "a", 70)};
+    run::Plan plan{.cases = {makeCase("t/1", "a", 64), makeCase("t/1", "a", 70)}};
     plan.cases[1].measure.processes = 3;
     const Predictor predictor({makePast(plan.cases[0], 1.0 / 3.0)});
     const auto file = folder.path() / "predictions.csv";
@@ -192,8 +189,7 @@ TEST(Predictions, RefuseWhatIsNeitherRunNorFile) {
 }
 
 TEST(Predictions, WithoutAPastIterationsCountAlike) {
-    run::Plan plan;
-    plan.cases = {makeCase("t/1", "a", 1), makeCase("t/1", "a", 2)};
+    run::Plan plan{.cases = {makeCase("t/1", "a", 1), makeCase("t/1", "a", 2)}};
     plan.cases[1].measure.repeats = 5;
     plan.cases[1].measure.processes = 2;
     EXPECT_EQ(cluster::caseTimesS(plan, Predictor()), (std::vector<double>{1.0, 10.0}));

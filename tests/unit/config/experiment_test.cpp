@@ -200,8 +200,7 @@ TEST_F(ExperimentTest, ProfilesAreLaidOverTheWhole) {
     std::string text = kSoftShadows;
     const std::string before = "    params: {reference_size: 256,";
     text.replace(text.find(before), before.size(), quickRatio);
-    ExperimentOptions quick;
-    quick.profile = "quick";
+    ExperimentOptions quick{.profile = "quick"};
     const Experiment table = load(text, quick);
     EXPECT_EQ(expandCases(table).size(), 8U);
     EXPECT_EQ(table.outputWidthPx, 128);
@@ -219,8 +218,7 @@ TEST_F(ExperimentTest, ProfilesAreLaidOverTheWhole) {
 }
 
 TEST_F(ExperimentTest, DocumentsRecreateTheExperiment) {
-    ExperimentOptions options;
-    options.sets = {parseOverride("measure.repeats=4")};
+    const ExperimentOptions options{.sets = {parseOverride("measure.repeats=4")}};
     for (const char* text : {kVoxelization, kSoftShadows, kTerrain}) {
         const Experiment first = load(text, options);
         const std::string json = first.document.toJson().dump(1);
@@ -348,8 +346,7 @@ TEST_F(ExperimentTest, ScenesThatAreKeysMergeByFile) {
     ASSERT_EQ(table.paramsByScene.entries().size(), 1U);
     EXPECT_EQ(table.paramsByScene.find(file)->toFlowText(), "{n: 3, m: 2}");
     EXPECT_EQ(table.sceneInstead.find(file)->text(), (folder.path() / "presets/b.ply").string());
-    ExperimentOptions quick;
-    quick.profile = "quick";
+    const ExperimentOptions quick{.profile = "quick"};
     EXPECT_EQ(load(text, quick).paramsByScene.find(file)->toFlowText(), "{n: 3, m: 7}");
     EXPECT_EQ(load(text + "scene_instead: {a.ply}\n").sceneInstead.toFlowText(), "{}");
     EXPECT_EQ(
@@ -375,8 +372,7 @@ TEST_F(ExperimentTest, FilesThatExtendTheNextOneTwiceAreNotReadForAnHour) {
 TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {
     EXPECT_EQ(errorText([] { parseOverride("a="); }),
               "'a=' on the command line has no value; null removes the key");
-    ExperimentOptions options;
-    options.sweeps = {parseOverride("a=null")};
+    const ExperimentOptions options{.sweeps = {parseOverride("a=null")}};
     EXPECT_EQ(loadError("table: p/1\ntitle: t\ntechnique: x\n", options),
               "command line, a=null: 'a' is not swept; nothing to remove");
     EXPECT_EQ(expandCases(load("table: p/1\ntitle: t\ntechnique: x\nsweep: {a: [1, 2]}\n", options))
@@ -385,11 +381,11 @@ TEST_F(ExperimentTest, WhatIsSetToNothingIsNoValue) {
 }
 
 TEST_F(ExperimentTest, Overrides) {
-    ExperimentOptions options;
-    options.sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),
-                    parseOverride("params.voxel=null"), parseOverride("measure.lane=quality")};
-    options.sweeps = {parseOverride("scene=models/duck, models/bunny"),
-                      parseOverride("slices={log2: [2, 8]}"), parseOverride("params.k=5")};
+    ExperimentOptions options{
+        .sets = {parseOverride("resolution=64"), parseOverride("output.width=100"),
+                 parseOverride("params.voxel=null"), parseOverride("measure.lane=quality")},
+        .sweeps = {parseOverride("scene=models/duck, models/bunny"),
+                   parseOverride("slices={log2: [2, 8]}"), parseOverride("params.k=5")}};
     const Experiment table = load(kVoxelization, options);
     EXPECT_EQ(table.params.toFlowText(), "{resolution: 64, method: worksheet}");
     EXPECT_EQ(table.outputWidthPx, 100);
@@ -489,8 +485,7 @@ TEST_F(ExperimentTest, SweepsTakeTheSceneFilesThatMatch) {
 }
 
 TEST_F(ExperimentTest, SceneFilesOfTheCommandLineStandInTheCurrentFolder) {
-    ExperimentOptions options;
-    options.sets = {parseOverride("scene=m.obj")};
+    ExperimentOptions options{.sets = {parseOverride("scene=m.obj")}};
     const std::string here = (fs::current_path() / "m.obj").string();
     EXPECT_EQ(load("table: p/1\ntitle: t\ntechnique: x\n", options).scene.text(), here);
     options.sets.clear();

@@ -254,8 +254,7 @@ TEST_F(PlotTest, NeedsALayout) {
 /// A profile may leave one value of an axis, a plan's document knows none of its values.
 TEST_F(PlotTest, HoldsUnderASmallerSweep) {
     const std::string text = body("[{x: size, y: aa, at: {scene: t}}]\n");
-    ExperimentOptions options;
-    options.sweeps = {parseOverride("scene=s")};
+    const ExperimentOptions options{.sweeps = {parseOverride("scene=s")}};
     const Experiment smaller = load(text, options);
     EXPECT_EQ(smaller.plots.size(), 1U);
     EXPECT_EQ(experimentFromDocument(smaller.document, "a.yaml").plots.size(), 1U);

@@ -271,10 +271,9 @@ TEST_F(ExperimentTest, PaperDocumentIsTheProfileWithoutOverrides) {
     const auto gridOf = [](const Node& document) {
         return document.find("params")->find("grid")->asInteger();
     };
-    ExperimentOptions quick;
-    quick.profile = "quick";
-    quick.sets = {parseOverride("depth=1")};
-    quick.sweeps = {parseOverride("scene=t,u")};
+    const ExperimentOptions quick{.profile = "quick",
+                                  .sets = {parseOverride("depth=1")},
+                                  .sweeps = {parseOverride("scene=t,u")}};
     const Experiment table = load("table: p/1\n" + body + profiles, quick);
     EXPECT_EQ(gridOf(table.document), 4);
     EXPECT_EQ(gridOf(table.paperDocument), 16);
@@ -296,8 +295,7 @@ TEST_F(ExperimentTest, ColumnsOfSeveralAxesAreJoined) {
     const Experiment table = load(text);
     EXPECT_THAT(table.claims[0].operands, ElementsAre("(dp_512 + 1)", "nr_512"));
     // What an override takes out of the sweep may still be printed and claimed.
-    ExperimentOptions options;
-    options.sweeps = {parseOverride("size=512")};
+    const ExperimentOptions options{.sweeps = {parseOverride("size=512")}};
     EXPECT_EQ(load(text, options).printed.header.size(), 3U);
 }
 

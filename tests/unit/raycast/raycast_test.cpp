@@ -334,9 +334,8 @@ TEST(RayTracer, NearestPointsAreOnTheNearestTriangle) {
                     glm::dot(hit->geometricNormal, point - hit->position) > -1e-5F);
     }
     // Triangles without area are as near as their corners.
-    scene::Mesh line;
-    line.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    line.triangles = {{0, 1, 2}, {1, 1, 1}};
+    const scene::Mesh line{.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}},
+                           .triangles = {{0, 1, 2}, {1, 1, 1}}};
     const auto hit = RayTracer(scene::sceneOf(line)).nearest({1.5F, 2, 0});
     ASSERT_TRUE(hit);
     EXPECT_FLOAT_EQ(hit->distance, 2.0F);

@@ -50,21 +50,19 @@ TEST(Csv, NothingOfItIsRunByASpreadsheet) {
 }
 
 Record sample(const std::string& caseId, double value) {
-    Record record;
-    record.caseId = caseId;
-    record.table = "zju2005/2.1";
-    record.technique = "voxelization";
-    record.method = "worksheet";
-    record.scene = "models/duck";
-    record.frame = 1;
-    record.repeat = 2;
-    record.process = 3;
-    record.lane = "timing";
-    record.pass = "rasterization";
-    record.metric = "gpu_time_ms";
-    record.unit = "ms";
-    record.value = value;
-    return record;
+    return Record{.caseId = caseId,
+                  .table = "zju2005/2.1",
+                  .technique = "voxelization",
+                  .method = "worksheet",
+                  .scene = "models/duck",
+                  .frame = 1,
+                  .repeat = 2,
+                  .process = 3,
+                  .lane = "timing",
+                  .pass = "rasterization",
+                  .metric = "gpu_time_ms",
+                  .unit = "ms",
+                  .value = value};
 }
 
 using Records = FolderTest;

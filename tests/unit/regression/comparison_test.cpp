@@ -392,13 +392,12 @@ TEST(Comparison, WhatDiffersInOneCaseIsInDoubtInAll) {
 /// As the pictures beside it; of a case that declares a seed, or was measured again, it is a
 /// change.
 TEST(Comparison, ANumberOfOneProcessASideWithoutASeedCannotTell) {
-    records::Record record;
-    record.table = "t";
-    record.technique = "external";
-    record.caseId = "a";
-    record.lane = "quality";
-    record.metric = "rmse";
-    record.unit = "1";
+    records::Record record{.caseId = "a",
+                           .table = "t",
+                           .technique = "external",
+                           .lane = "quality",
+                           .metric = "rmse",
+                           .unit = "1"};
     const auto sideOf = [&](std::vector<double> values) {
         std::vector<records::Record> side;
         for (std::size_t i = 0; i < values.size(); ++i) {
@@ -724,13 +723,8 @@ TEST(Comparison, CpuTimeStandsForTheClockOnASoftwareDevice) {
 }
 
 records::Record recordOf(const std::string& metric, const std::string& unit, double value) {
-    records::Record record;
-    record.table = "p/1";
-    record.lane = "timing";
-    record.metric = metric;
-    record.unit = unit;
-    record.value = value;
-    return record;
+    return records::Record{
+        .table = "p/1", .lane = "timing", .metric = metric, .unit = unit, .value = value};
 }
 
 TEST(SeriesOf, TakesFramesTimesOfTheTimingLaneOnly) {

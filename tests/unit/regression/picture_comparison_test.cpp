@@ -33,10 +33,7 @@ struct Pictures : ::testing::Test {
         records::ImageWriter(dir).append(
             {{side, "p/1", frame, name, stem + ".png", stem + ".exr", "p/1", "",
               sha256OfFile(dir / (stem + ".png")), sha256OfFile(dir / (stem + ".exr"))}});
-        records::Record row;
-        row.caseId = side;
-        row.table = "p/1";
-        row.technique = "mock";
+        const records::Record row{.caseId = side, .table = "p/1", .technique = "mock"};
         caseParams[side] = params;
         records[side] = {row};
     }

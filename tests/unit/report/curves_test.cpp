@@ -24,20 +24,15 @@ using testing::DoubleEq;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 tables::FigurePoint point(double x, double y, double halfWidth = 0.0) {
-    tables::FigurePoint point;
-    point.x = x;
-    point.y = y;
-    point.interval = {y - halfWidth, y + halfWidth};
+    tables::FigurePoint point{.x = x, .y = y, .interval = {y - halfWidth, y + halfWidth}};
     if (halfWidth > 0.0) point.bounds = tables::Bounds::Interval;
     return point;
 }
 
 tables::Figure figureOf(std::vector<tables::FigurePoint> points) {
-    tables::Figure figure;
-    figure.xLabel = "size";
-    figure.curveNames = {"one"};
-    figure.panels = {{"", "time (ms)", {{"one", std::move(points), {}}}}};
-    return figure;
+    return tables::Figure{.xLabel = "size",
+                          .curveNames = {"one"},
+                          .panels = {{"", "time (ms)", {{"one", std::move(points), {}}}}}};
 }
 
 tables::Figure twoCurves() {

@@ -98,19 +98,13 @@ TEST(Gallery, SaysHowFarItIs) {
 // Which pictures stand for a document.
 
 ClaimResult claim(const std::string& id, Verdict verdict) {
-    ClaimResult result;
-    result.id = id;
-    result.verdict = verdict;
-    result.origin = config::ClaimSpec::Origin::Document;
-    return result;
+    return ClaimResult{.id = id, .verdict = verdict, .origin = config::ClaimSpec::Origin::Document};
 }
 
 /// A page with pictures at these distances from their truths.
 Page pageOf(const std::string& id, const config::Experiment& experiment,
             std::vector<ClaimResult> claims, const std::vector<double>& distances) {
-    RunPart part;
-    part.experiment = &experiment;
-    part.claims = std::move(claims);
+    RunPart part{.experiment = &experiment, .claims = std::move(claims)};
     for (const double distance : distances) {
         Shot shot;
         shot.caseId = id + std::to_string(distance);

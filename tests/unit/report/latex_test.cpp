@@ -112,9 +112,7 @@ layout: {rows: scene, columns: {"x_1": {metric: m}, "x 1": {metric: m}, "x/1": {
 }
 
 TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
-    tables::Table table;
-    table.id = "p/1";
-    table.columns = {{"b", ""}};
+    const tables::Table table{.id = "p/1", .columns = {{"b", ""}}};
     EXPECT_THAT(tableLatex(table), Not(HasSubstr("Note")));
     const std::string latex = tableLatex(table, {"imported: 5 % elsewhere"});
     EXPECT_THAT(latex, HasSubstr("\\gfxreproset{p/1/notes}{Note: imported: 5 \\% elsewhere.}%\n"));
@@ -126,10 +124,7 @@ TEST(Latex, WhatHoldsOfTheRunStandsBelowTheTable) {
 }
 
 TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
-    tables::Table table;
-    table.id = "p/1";
-    table.rowAxes = {"a"};
-    table.columns = {{"b", ""}};
+    tables::Table table{.id = "p/1", .rowAxes = {"a"}, .columns = {{"b", ""}}};
     tables::Cell cell;
     cell.measured = "5";
     table.rows = {{{"1"}, tables::SceneSource::Unknown, {cell}}};
@@ -140,11 +135,8 @@ TEST(Latex, WithoutPrintedCellsThereAreMeasuredColumnsAlone) {
 }
 
 TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
-    tables::Table table;
-    table.id = "p/1";
-    table.isOnlyPrinted = true;
-    table.rowAxes = {"a"};
-    table.columns = {{"b", ""}};
+    tables::Table table{
+        .id = "p/1", .isOnlyPrinted = true, .rowAxes = {"a"}, .columns = {{"b", ""}}};
     tables::Cell cell;
     cell.isPlanned = false;
     cell.printed = "5";
@@ -157,11 +149,8 @@ TEST(Latex, PrintedAloneHasNoMeasuredColumns) {
 
 /// Of a published table, too: a column for print stands beside what is printed alone.
 TEST(Latex, EachColumnAloneSaysWhatIsPrinted) {
-    tables::Table table;
-    table.id = "p/1";
-    table.isPublished = true;
-    table.rowAxes = {"a"};
-    table.columns = {{"b", ""}, {"lit_ms", ""}};
+    tables::Table table{
+        .id = "p/1", .isPublished = true, .rowAxes = {"a"}, .columns = {{"b", ""}, {"lit_ms", ""}}};
     tables::Cell printed, measured;
     printed.measured = measured.measured = "5";
     printed.printed = "6";
@@ -175,10 +164,8 @@ TEST(Latex, EachColumnAloneSaysWhatIsPrinted) {
 }
 
 tables::Table wideTable(std::size_t columns) {
-    tables::Table table;
-    table.id = "p/1";
-    table.rowAxes = {"a"};
-    table.rows = {{{"1"}, tables::SceneSource::Unknown, {}}};
+    tables::Table table{
+        .id = "p/1", .rowAxes = {"a"}, .rows = {{{"1"}, tables::SceneSource::Unknown, {}}}};
     for (std::size_t i = 0; i < columns; ++i) {
         table.columns.push_back({"quantity_" + std::to_string(i), ""});
         tables::Cell cell;

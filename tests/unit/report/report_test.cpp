@@ -73,12 +73,11 @@ void judge(ReportRun& run, const tables::Recorded& recorded) {
 }
 
 ReportRun runIn(const fs::path& folder, double drawMs = 8.0) {
-    ReportRun run;
-    run.folder = folder;
-    run.context = kContext;
-    run.manifest = {{"cpu", "Xeon <script>"},
-                    {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}};
-    run.experiments = {experiment()};
+    ReportRun run{.folder = folder,
+                  .context = kContext,
+                  .manifest = {{"cpu", "Xeon <script>"},
+                               {"scenes", {{"models/duck", {{"kind", "stand-in"}}}}}},
+                  .experiments = {experiment()}};
     config::Case& shown = run.cases.emplace_back();
     shown.id = records()[0].caseId;
     shown.experiment = "zju2005/9.9";
@@ -677,9 +676,7 @@ TEST_F(Report, RunsStandSideBySide) {
 TEST_F(Report, IdsAreUniqueAlsoWithCurvesOfSeveralRuns) {
     const TemporaryFolder a, b, out;
     std::vector<ReportRun> runs = {runIn(a.path()), runIn(b.path(), 12.0)};
-    config::PlotSpec plot;
-    plot.x = "error";
-    plot.y = {"draw_ms"};
+    const config::PlotSpec plot{.x = "error", .y = {"draw_ms"}};
     for (ReportRun& run : runs) {
         run.experiments[0].plots = {plot, plot};
         run.curves = drawCurves("", run.tables, run.experiments);

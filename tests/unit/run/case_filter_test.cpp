@@ -18,10 +18,8 @@ Case caseOf(const std::string& id, const std::string& axes) {
 }
 
 Plan plan() {
-    Plan result;
-    result.cases = {caseOf("aa11", "{step: 1, view: [0, 1]}"), caseOf("aa22", "{step: 2.0}"),
-                    caseOf("bb33", "{step: 2.0, packed: true}")};
-    return result;
+    return Plan{.cases = {caseOf("aa11", "{step: 1, view: [0, 1]}"), caseOf("aa22", "{step: 2.0}"),
+                          caseOf("bb33", "{step: 2.0, packed: true}")}};
 }
 
 std::vector<std::string> left(const std::vector<std::string>& only) {

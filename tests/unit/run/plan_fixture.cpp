@@ -22,20 +22,18 @@ cluster::PastCase makePast(const config::Case& item, double renderS) {
 }
 
 records::Record makeRow(const config::Case& item, double value, int process) {
-    records::Record row;
-    row.caseId = item.id;
-    row.table = item.experiment;
-    row.lane = item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality";
-    row.metric = "number";
-    row.value = value;
-    row.process = process;
-    return row;
+    return records::Record{
+        .caseId = item.id,
+        .table = item.experiment,
+        .process = process,
+        .lane = item.measure.lane == config::Measure::Lane::Timing ? "timing" : "quality",
+        .metric = "number",
+        .value = value};
 }
 
 cluster::ShardRun makeShard(const run::Plan& plan, int index, int count,
                             const std::vector<std::size_t>& cases, const std::string& renderer) {
-    cluster::ShardRun shard;
-    shard.path = "s" + std::to_string(index);
+    cluster::ShardRun shard{.path = "s" + std::to_string(index)};
     shard.run.plan = plan;
     shard.run.plan.shard = run::Shard{index, count, {}};
     shard.run.plan.cases.clear();

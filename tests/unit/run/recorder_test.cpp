@@ -64,9 +64,10 @@ TEST(ImageAttributes, SayWhatMadeAnImage) {
 /// any matrix.
 TEST(ImageAttributes, CameraIsAsOpenExrDefinesIt) {
     const glm::vec3 eye(1.0F, 2.0F, 3.0F);
-    technique::ImageOptions options;
-    options.camera = {glm::lookAt(eye, eye + glm::vec3(5.0F, 0.0F, 0.0F), glm::vec3(0, 1, 0)),
-                      glm::perspective(glm::radians(90.0F), 2.0F, 0.5F, 100.0F), 0.5F, 100.0F};
+    const technique::ImageOptions options{
+        .camera = technique::ImageCamera{
+            glm::lookAt(eye, eye + glm::vec3(5.0F, 0.0F, 0.0F), glm::vec3(0, 1, 0)),
+            glm::perspective(glm::radians(90.0F), 2.0F, 0.5F, 100.0F), 0.5F, 100.0F}};
     image::ExrImage exr;
     describeImage(exr, someCase(), 0, "", options);
     EXPECT_THAT(exr.attributes.at("camera"), HasSubstr(R"("eye":[1.0,2.0,3.0])"));
@@ -229,11 +230,8 @@ TEST(RunRecorder, TakesWhatIsDeclaredAlone) {
 }
 
 config::Measure timing(int repeats, int frames) {
-    config::Measure measure;
-    measure.lane = config::Measure::Lane::Timing;
-    measure.repeats = repeats;
-    measure.frames = frames;
-    return measure;
+    return config::Measure{
+        .lane = config::Measure::Lane::Timing, .repeats = repeats, .frames = frames};
 }
 
 TEST(Pacing, OnASoftwareDeviceAndInTheQualityLaneAsTheConfigSays) {

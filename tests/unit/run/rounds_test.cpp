@@ -11,10 +11,10 @@ using TimePoint = run::Rounds::TimePoint;
 
 /// q/1 with two cases, t/1 with three that are timed in six rounds or more.
 run::Plan timedPlan() {
-    run::Plan plan;
-    plan.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1),
-                  makeCase("t/1", "a", 1, Lane::Timing), makeCase("t/1", "b", 1, Lane::Timing),
-                  makeCase("t/1", "c", 1, Lane::Timing)};
+    run::Plan plan{.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1),
+                             makeCase("t/1", "a", 1, Lane::Timing),
+                             makeCase("t/1", "b", 1, Lane::Timing),
+                             makeCase("t/1", "c", 1, Lane::Timing)}};
     for (config::Case& item : plan.cases) {
         if (item.measure.lane == Lane::Quality) continue;
         item.measure.processes = 6;
@@ -63,10 +63,10 @@ TEST(Units, GoForthAndBackByRounds) {
 }
 
 TEST(Units, SpreadTheRoundsOfATableOverTheRun) {
-    run::Plan plan;
-    plan.cases = {makeCase("t/1", "a", 1, Lane::Timing), makeCase("t/1", "b", 1, Lane::Timing),
-                  makeCase("q/1", "a", 1), makeCase("t/2", "a", 1, Lane::Timing),
-                  makeCase("t/3", "a", 1, Lane::Timing)};
+    run::Plan plan{.cases = {makeCase("t/1", "a", 1, Lane::Timing),
+                             makeCase("t/1", "b", 1, Lane::Timing), makeCase("q/1", "a", 1),
+                             makeCase("t/2", "a", 1, Lane::Timing),
+                             makeCase("t/3", "a", 1, Lane::Timing)}};
     for (const std::size_t i : {0, 1, 4}) plan.cases[i].measure.processes = 2;
     EXPECT_THAT(namesOf(run::unitsOf(plan)),
                 ElementsAre("q/1 a 1 #0", "t/1 a 1 #0", "t/1 b 1 #0", "t/3 a 1 #0", "t/2 a 1 #0",

@@ -42,11 +42,10 @@ scene::Scene furnished(Params& params, std::uint64_t seed) {
     const auto count = params.getInt("count", 100000, {"points", "points", 1, 1000000});
     params.finish();
     ++timesMade;
-    scene::Mesh mesh;
-    mesh.name = "a";
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}};
-    mesh.material = 0;
+    const scene::Mesh mesh{.name = "a",
+                           .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                           .triangles = {{0, 1, 2}},
+                           .material = 0};
     scene::Scene scene = scene::sceneOf(mesh);
     scene.materials.push_back({.name = "m", .roughness = 0.25F, .indexOfRefraction = 1.25F});
     scene.textures.emplace_back(2, 3, 4, std::uint8_t{7});

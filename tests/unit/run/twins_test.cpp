@@ -137,9 +137,9 @@ TEST(Twins, ATableOfTimesTakesThemFromOneThatIsMeasured) {
 }
 
 TEST(Twins, GoToOneShardAndStayUnitsOfTheirTables) {
-    run::Plan plan;
-    plan.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1), makeCase("q/2", "b", 1),
-                  makeCase("q/2", "a", 1), makeCase("q/2", "c", 1)};
+    const run::Plan plan{.cases = {makeCase("q/1", "a", 1), makeCase("q/1", "b", 1),
+                                   makeCase("q/2", "b", 1), makeCase("q/2", "a", 1),
+                                   makeCase("q/2", "c", 1)}};
     EXPECT_THAT(cluster::indivisibleGroups(plan.cases),
                 ElementsAre(ElementsAre(0, 3), ElementsAre(1, 2), ElementsAre(4)));
     EXPECT_EQ(run::unitsOf(plan).size(), 5U);

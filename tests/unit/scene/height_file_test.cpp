@@ -114,8 +114,7 @@ TEST(HeightFile, TheFileOpenedLongestAgoGoes) {
 
 TEST(HeightFile, ResamplesAsInMemoryAndStaysThereWithoutAFolder) {
     const TemporaryFolder folder;
-    FractalTerrain shape;
-    shape.sizeSamples = 33;
+    const FractalTerrain shape{.sizeSamples = 33};
     const HeightMap coarse = fractalTerrain(shape, 5);
     const HeightMap expected = resampled(coarse, 257, 30.0F, 3);
     const HeightMap found = resampledInFile(coarse, 257, 30.0F, 3, folder.path(), "key");
@@ -191,9 +190,7 @@ TEST(HoleFilling, BandsGetWhatTheWholePyramidGives) {
          {glm::ivec2(90, 400), {64, 64}, {65, 129}, {1, 300}, {7, 1}, {130, 63}}) {
         std::vector<float> expected = withHoles(size);
         expected[0] = 5.0F;
-        HeightMap map;
-        map.sizeSamples = size;
-        map.heightsM = expected;
+        HeightMap map{.sizeSamples = size, .heightsM = expected};
         fillHoles(map);
         expected = filledByAWholePyramid(expected, size);
         EXPECT_EQ(map.heightsM, expected) << size.x << " x " << size.y;

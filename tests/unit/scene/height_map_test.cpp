@@ -316,8 +316,7 @@ TEST(HeightMap, RefusesOtherFiles) {
 }
 
 TEST(HeightMap, HolesAreFilledFromAround) {
-    HeightMap map;
-    map.sizeSamples = {40, 23};
+    HeightMap map{.sizeSamples = {40, 23}};
     map.heightsM.assign(40 * 23, std::numeric_limits<float>::quiet_NaN());
     EXPECT_THROW(fillHoles(map), Error);
     map.heightsM[0] = 10.0F;
@@ -360,9 +359,7 @@ TEST(HeightMap, SamplesMayStandFurtherApartOneWay) {
 }
 
 TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
-    FractalTerrain shape;
-    shape.sizeSamples = 33;
-    shape.spacingM = 160.0F;
+    const FractalTerrain shape{.sizeSamples = 33, .spacingM = 160.0F};
     const HeightMap coarse = fractalTerrain(shape, 5);
     const HeightMap smooth = resampled(coarse, 257, 0.0F, 1);
     const HeightMap rough = resampled(coarse, 257, 30.0F, 1);
@@ -381,8 +378,7 @@ TEST(HeightMap, ResamplingKeepsTheSamplesAndBoundsTheDetail) {
 }
 
 TEST(HeightMap, MeshFacesUpAndHoldsTheCorners) {
-    FractalTerrain shape;
-    shape.sizeSamples = 100;
+    const FractalTerrain shape{.sizeSamples = 100};
     const HeightMap map = fractalTerrain(shape, 5);
     const Mesh mesh = heightMapMesh(map, 10);
     EXPECT_LE(mesh.positions.size(), 100U);

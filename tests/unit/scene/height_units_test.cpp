@@ -238,8 +238,7 @@ TEST_F(HeightUnits, SpacingOfATransformAndOfOtherUnitsIsConverted) {
                   folder.path()),
               "DIR/a.tif: the angular unit is 9101; allowed: 9102 (degree)");
     // Who says it does not need the file's.
-    HeightMapUnits units;
-    units.spacingM = 5.0F;
+    const HeightMapUnits units{.spacingM = 5.0F};
     EXPECT_EQ(loadHeightMap(folder.path() / "a.tif", units).spacingM, glm::vec2(5.0F));
 }
 
@@ -254,8 +253,7 @@ TEST_F(HeightUnits, SamplesThatStandAskewAreRefused) {
     EXPECT_EQ(loadHeightMap(path, {}).spacingM, glm::vec2(30.0F, 10.0F));
     const std::string askew = "DIR/a.tif: its rows and columns are askew; allowed: at right angles";
     EXPECT_EQ(error({}, {10, 6, 0, 0, 0, -8, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1}), askew);
-    HeightMapUnits units;
-    units.spacingM = 8.0F;
+    const HeightMapUnits units{.spacingM = 8.0F};
     EXPECT_EQ(loadHeightMap(path, units).spacingM, glm::vec2(8.0F)) << "by who reads it";
     // Turned in degrees at 60 degrees north, where those from west to east are half as long.
     const std::vector<std::uint16_t> degrees{1, 1, 0, 1, 1024, 0, 1, 2};

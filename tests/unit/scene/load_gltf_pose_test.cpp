@@ -199,11 +199,7 @@ TEST_F(PoseGltf, HidesWhatSaysSo) {
 }
 
 Camera keyAt(const glm::vec3& position, const glm::vec3& target, float fovRad = 1.0F) {
-    Camera camera;
-    camera.position = position;
-    camera.target = target;
-    camera.verticalFovRad = fovRad;
-    return camera;
+    return Camera{.position = position, .target = target, .verticalFovRad = fovRad};
 }
 
 CameraPath bentPath() {
@@ -319,9 +315,7 @@ glm::vec3 movedAt(const Scene& scene, double time, const glm::vec3& pointMesh) {
 }
 
 TEST(PosesAt, LeavesWhatDoesNotMove) {
-    Motion motion;
-    motion.turnRad = 2.0F;
-    motion.swing = {1, 0, 0};
+    const Motion motion{.turnRad = 2.0F, .swing = {1, 0, 0}};
     const Scene scene = movingScene(motion);
     for (const double time : {0.0, 0.3, 1.0}) {
         const auto poses = posesAt(scene, time);
@@ -332,9 +326,7 @@ TEST(PosesAt, LeavesWhatDoesNotMove) {
 }
 
 TEST(PosesAt, TurnsAboutItsPivot) {
-    Motion motion;
-    motion.pivot = {5, 3, 1};
-    motion.turnRad = glm::pi<float>();
+    const Motion motion{.pivot = {5, 3, 1}, .turnRad = glm::pi<float>()};
     const Scene scene = movingScene(motion);
     // The mesh's (2, 1.5, 0.5) lies on the pivot in the world: it stays.
     for (const double time : {0.0, 0.2, 0.5, 1.0}) {
@@ -347,9 +339,7 @@ TEST(PosesAt, TurnsAboutItsPivot) {
 }
 
 TEST(PosesAt, SwingsAFullPeriodAsOftenAsItSays) {
-    Motion motion;
-    motion.swing = {0, 0.5F, 1};
-    motion.swingCount = 2.0F;
+    const Motion motion{.swing = {0, 0.5F, 1}, .swingCount = 2.0F};
     const Scene scene = movingScene(motion);
     const glm::vec3 rest(1, 0, 0);
     for (const double time : {0.0, 0.25, 0.5, 0.75, 1.0}) {
@@ -361,8 +351,7 @@ TEST(PosesAt, SwingsAFullPeriodAsOftenAsItSays) {
 }
 
 TEST(PosesAt, TimesOutsideAreClamped) {
-    Motion motion;
-    motion.turnRad = 1.0F;
+    const Motion motion{.turnRad = 1.0F};
     const Scene scene = movingScene(motion);
     EXPECT_EQ(posesAt(scene, -1.0), posesAt(scene, 0.0));
     EXPECT_EQ(posesAt(scene, 7.0), posesAt(scene, 1.0));

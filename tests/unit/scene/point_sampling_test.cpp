@@ -89,9 +89,7 @@ TEST(SurfaceOf, HasTheOutsideOutsideOfAMirrorImage) {
 }
 
 TEST(SampledPoints, RefuseWhatHasNoArea) {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
-    mesh.triangles = {{0, 1, 2}};
+    const Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .triangles = {{0, 1, 2}}};
     Scene scene = sceneOf(mesh);
     scene.name = "line";
     try {
@@ -143,10 +141,9 @@ TEST(CompletePoints, TurnsTheWayOfGivenNormals) {
 
 TEST(CompletePoints, DropsDuplicatesAndWhatIsNotFinite) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    PointCloud points;
-    points.positions = {{0, 0, 0}, {1, 0, 0}, {nan, 0, 0}, {0, 0, 0}, {2, 0, 0}};
-    points.normals = {{0, 1, 0}, {nan, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}};
-    points.radii = {0.5F, 0.0F, 1.0F, 2.0F, -1.0F};
+    PointCloud points{.positions = {{0, 0, 0}, {1, 0, 0}, {nan, 0, 0}, {0, 0, 0}, {2, 0, 0}},
+                      .normals = {{0, 1, 0}, {nan, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 1, 0}},
+                      .radii = {0.5F, 0.0F, 1.0F, 2.0F, -1.0F}};
     const PointRepairs repairs = completePoints(points);
     EXPECT_EQ(repairs.dropped, 1U);
     EXPECT_EQ(repairs.duplicates, 1U);
@@ -157,8 +154,7 @@ TEST(CompletePoints, DropsDuplicatesAndWhatIsNotFinite) {
 }
 
 TEST(CompletePoints, TakesOnePointAndRefusesNone) {
-    PointCloud one;
-    one.positions = {{3, 4, 5}, {3, 4, 5}};
+    PointCloud one{.positions = {{3, 4, 5}, {3, 4, 5}}};
     completePoints(one);
     ASSERT_EQ(one.positions.size(), 1U);
     EXPECT_EQ(one.normals[0], glm::vec3(0, 1, 0));

@@ -18,8 +18,7 @@ Mesh randomMesh(std::uint64_t seed) {
     const auto vec3 = [&random] {
         return glm::vec3{random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-9, 9)};
     };
-    Mesh mesh;
-    mesh.name = "mesh" + std::to_string(seed);
+    Mesh mesh{.name = "mesh" + std::to_string(seed)};
     for (std::uint32_t i = 0; i < 100; ++i) {
         mesh.positions.push_back(vec3());
         mesh.normals.push_back(glm::normalize(vec3()));
@@ -75,23 +74,21 @@ TEST(LoadScene, ListsTheExtensions) {
 }
 
 Material unusualMaterial() {
-    Material material;
-    material.name = "unusual";
-    material.baseColor = {0.1F, 0.2F, 0.3F, 0.7F};
-    material.metallic = 0.9F;
-    material.roughness = 0.3F;
-    material.emissive = {0.1F, 17.3F, 3.3F};
-    material.baseColorTexture = 0;
-    material.metallicRoughnessTexture = 1;
-    material.normalTexture = 0;
-    material.normalScale = 0.75F;
-    material.emissiveTexture = 1;
-    material.alphaCutoff = 0.6F;
-    material.isDoubleSided = true;
-    material.isUnlit = true;
-    material.transmission = 0.8F;
-    material.indexOfRefraction = 1.31F;
-    return material;
+    return Material{.name = "unusual",
+                    .baseColor = {0.1F, 0.2F, 0.3F, 0.7F},
+                    .metallic = 0.9F,
+                    .roughness = 0.3F,
+                    .emissive = {0.1F, 17.3F, 3.3F},
+                    .baseColorTexture = 0,
+                    .metallicRoughnessTexture = 1,
+                    .normalTexture = 0,
+                    .normalScale = 0.75F,
+                    .emissiveTexture = 1,
+                    .alphaCutoff = 0.6F,
+                    .isDoubleSided = true,
+                    .isUnlit = true,
+                    .transmission = 0.8F,
+                    .indexOfRefraction = 1.31F};
 }
 
 using SaveGlb = FolderTest;
@@ -108,10 +105,7 @@ TEST_F(SaveGlb, KeepsInstancesMaterialsTexturesAndCameras) {
     scene.instances = {{0, glm::mat4(1.0F)},
                        {1, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 2, 3))},
                        {0, glm::scale(glm::mat4(1.0F), glm::vec3(-0.3F, 1, 1))}};
-    Camera camera;
-    camera.name = "eye";
-    camera.position = {1, 2, 3};
-    camera.target = {0, 0, 0};
+    const Camera camera{.name = "eye", .position = {1, 2, 3}, .target = {0, 0, 0}};
     scene.cameras = {camera};
     saveGlb(folder.path() / "a.glb", scene);
     const Scene back = loadGltf(folder.path() / "a.glb");
@@ -189,11 +183,10 @@ Scene litAndMoving(const glm::dvec3& offset) {
     scene.instances.push_back({0, glm::translate(glm::mat4(1.0F), glm::vec3(0.1F, 2, 3))});
     scene.offset = offset;
     scene.lights = {{{0.1F, 2, 3}, {0.3F, 0.7F, 1.9F}, 4.3F}, {{1, 0, 0}, glm::vec3(0.0F), 1.1F}};
-    Camera key;
-    key.position = {0.1F, 0.2F, 0.3F};
-    key.up = {0.6F, 0.8F, 0};
-    key.verticalFovRad = 0.9F;
-    key.nearM = 0.3F;
+    const Camera key{.position = {0.1F, 0.2F, 0.3F},
+                     .up = {0.6F, 0.8F, 0},
+                     .verticalFovRad = 0.9F,
+                     .nearM = 0.3F};
     scene.paths = {{"path_1", {key, Camera{}}}, {"path_2", {Camera{}}}};
     scene.motions = {{1, {0.1F, 2, 3}, {0.6F, 0, 0.8F}, 0.7F, {0, 0.3F, 0}, 2.5F}};
     return scene;

@@ -15,12 +15,10 @@ namespace {
 using Corners = std::vector<glm::vec3>;
 
 Mesh triangle() {
-    Mesh mesh;
-    mesh.name = "triangle";
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-    mesh.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
-    mesh.triangles = {{0, 1, 2}};
-    return mesh;
+    return Mesh{.name = "triangle",
+                .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                .normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+                .triangles = {{0, 1, 2}}};
 }
 
 glm::vec3 faceNormal(const Mesh& mesh, std::size_t index) {
@@ -107,11 +105,10 @@ TEST(VertexNormals, HoldForTinyTriangles) {
 }
 
 TEST(TriangleNormals, EachTriangleHasItsOwnCorners) {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    mesh.texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-    mesh.triangles = {{0, 1, 2}, {0, 3, 1}, {1, 1, 2}};
-    mesh.isFlat = true;
+    const Mesh mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                    .texcoords = {{0, 0}, {1, 0}, {0, 1}, {1, 1}},
+                    .triangles = {{0, 1, 2}, {0, 3, 1}, {1, 1, 2}},
+                    .isFlat = true};
     const Mesh flat = withTriangleNormals(mesh);
     EXPECT_EQ(flat.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}}));
     EXPECT_EQ(flat.positions[4], glm::vec3(0, 0, 1));

@@ -17,12 +17,10 @@ Node node(const std::string& yaml) {
 /// One that is bound to cases which take `value`; an empty one is free text.
 config::Assumption assumption(const std::string& name, const std::string& value,
                               const std::string& range) {
-    config::Assumption result;
-    result.name = name;
-    result.value = Node::scalar(value);
-    result.range = node(range);
-    result.isBound = !value.empty();
-    return result;
+    return config::Assumption{.name = name,
+                              .value = Node::scalar(value),
+                              .range = node(range),
+                              .isBound = !value.empty()};
 }
 
 config::Case caseWith(const std::string& params, const std::string& axes = "{}") {
@@ -118,11 +116,7 @@ TEST_F(Sensitivity, VariesScenesBySeedAndByAlternatives) {
 
 VariationResult outcome(const std::string& name, const std::string& value, Verdict verdict,
                         std::optional<double> margin = {}) {
-    ClaimResult claim;
-    claim.id = "C";
-    claim.text = "a < b";
-    claim.verdict = verdict;
-    claim.distance = margin;
+    const ClaimResult claim{.id = "C", .text = "a < b", .verdict = verdict, .distance = margin};
     Variation variation{name, value, std::nullopt, {}};
     if (margin) variation.number = std::stod(value);
     return {variation, {claim}};
@@ -243,9 +237,7 @@ TEST_F(Sensitivity, ATableTakesTheKeptPlaceOfItselfAlone) {
 
 /// An experiment of one claim, and its plan of one case.
 run::Plan planWith(const std::string& claim, int number) {
-    run::Plan plan;
-    plan.deviceClass = "software";
-    plan.profile = "quick";
+    run::Plan plan{.profile = "quick", .deviceClass = "software"};
     config::Experiment experiment;
     experiment.id = "p/1";
     experiment.document = node("{claims: {C: " + claim + "}}");

@@ -11,9 +11,7 @@ namespace {
 
 /// A grid of `spread` with one measured value a column; none where it is negative.
 Table tableOf(const std::vector<std::vector<double>>& rows) {
-    Table table;
-    table.rowAxes = {"spread"};
-    table.columns = {{"a", "%"}, {"b", "%"}};
+    Table table{.rowAxes = {"spread"}, .columns = {{"a", "%"}, {"b", "%"}}};
     for (std::size_t i = 0; i < rows.size(); ++i) {
         TableRow row{.labels = {std::to_string(i + 1)}, .cells = {}};
         for (const double value : rows[i]) {

@@ -16,11 +16,8 @@ FrameTimes timesOf(const RecordMaker& maker) {
 }
 
 config::Measure measureOf(int processes, double timeBudgetS = 0.0) {
-    config::Measure measure;
-    measure.lane = config::Measure::Lane::Timing;
-    measure.processes = processes;
-    measure.timeBudgetS = timeBudgetS;
-    return measure;
+    return config::Measure{
+        .lane = config::Measure::Lane::Timing, .processes = processes, .timeBudgetS = timeBudgetS};
 }
 
 /// One case, a process a value; CPU time is half of the time on the wall.

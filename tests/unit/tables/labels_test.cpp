@@ -67,11 +67,11 @@ TEST(Labels, AColumnOfSeveralAxesIsItsPartsInWords) {
 }
 
 TEST(Labels, WhatAClaimAsksIsSaidInTheColumnsWords) {
-    Table table;
-    table.rowAxes = {"n_lights", "measure"};
-    table.words = {{"lit_ms", "lighting"}};
-    table.columns = {{"draw_ms", "ms"}, {"lit_ms", "ms"}, {"flip_mean", "1"}, {"a-b_pct", "%"}};
-    table.rows = {{{"1", "useful_pct"}, {}, {}}};
+    const Table table{
+        .words = {{"lit_ms", "lighting"}},
+        .rowAxes = {"n_lights", "measure"},
+        .columns = {{"draw_ms", "ms"}, {"lit_ms", "ms"}, {"flip_mean", "1"}, {"a-b_pct", "%"}},
+        .rows = {{{"1", "useful_pct"}, {}, {}}}};
     EXPECT_EQ(inWords("draw_ms / lit_ms in [0.5, 1.5]", table), "draw / lighting in [0.5, 1.5]");
     EXPECT_EQ(inWords("draw_ms/lit_ms < 2", table), "draw/lighting < 2");
     EXPECT_EQ(inWords("draw_ms ≤ 10", table), "draw [ms] ≤ 10");

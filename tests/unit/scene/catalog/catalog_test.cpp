@@ -125,9 +125,7 @@ TEST(Catalog, TakesAGeneratedSceneWithOtherParameters) {
 Scene oneTriangle(Params& params, std::uint64_t) {
     const auto sizeM = static_cast<float>(params.getDouble("size_m", 1.0, {"width", "m", 0.1, 9}));
     params.finish();
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {sizeM, 0, 0}, {0, 1, 0}};
-    mesh.triangles = {{0, 1, 2}};
+    Mesh mesh{.positions = {{0, 0, 0}, {sizeM, 0, 0}, {0, 1, 0}}, .triangles = {{0, 1, 2}}};
     return sceneOf(std::move(mesh));
 }
 
@@ -332,10 +330,7 @@ TEST(Catalog, TurnsAUsersModelUp) {
     Scene tall =
         sceneOf(Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 2, 5}}, .triangles = {{0, 1, 2}}});
     tall.lights = {{{1, 2, 3}}};
-    Camera camera;
-    camera.position = {0, -4, 1};
-    camera.target = {0, 0, 1};
-    camera.up = {0, 0, 1};
+    const Camera camera{.position = {0, -4, 1}, .target = {0, 0, 1}, .up = {0, 0, 1}};
     tall.cameras = {camera};
     tall.paths = {{"round", {camera}}};
     tall.motions = {{0, {1, 2, 3}, {0, 0, 1}, 1.0F, {0, 0, 1}, 1.0F}};

@@ -9,18 +9,14 @@ namespace gfxrepro::scene {
 namespace {
 
 Mesh square() {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
-    mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
+    return Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                .texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}},
+                .triangles = {{0, 1, 2}, {0, 2, 3}}};
 }
 
 Mesh tetrahedron() {
-    Mesh mesh;
-    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    return mesh;
+    return Mesh{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                .triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};
 }
 
 double area(const Mesh& mesh) {
