@@ -17,6 +17,7 @@ std::span<const GeneratorInfo> registeredGenerators() {
         {"bathroom", "a bathroom with 15 reflectors: tub, basin, toilet, taps, mirrors", &bathroom},
         {"bird_nest", "twigs woven into a bowl, with eggs, on a branch", &birdNest},
         {"city", "a downtown seen from above: streets, towers, houses, trees and cars", &city},
+        {"cornell_box", "the Cornell box as it was measured, with its camera", &cornellBox, false},
         {"four_objects", "four boxes, one of which two views do not see", &fourObjects, false},
         {"grass", "bent blades on uneven ground", &grass},
         {"living_room", "a furnished room with 25 reflective objects", &livingRoom},

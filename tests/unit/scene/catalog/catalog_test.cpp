@@ -425,8 +425,8 @@ TEST(Catalog, RefusesBadEntries) {
               "DIR/scenes/m/x.yaml:3:36: refine_to is 0; allowed: at least 1");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_modell}]\n"),
               "DIR/scenes/m/x.yaml:3:23: unknown generator 'sdf_modell'; did you mean 'sdf_model'? "
-              "(there are: bathroom, bird_nest, city, four_objects, grass, living_room, "
-              "object_on_plane, sdf_model, terrain, town_square, tree)");
+              "(there are: bathroom, bird_nest, city, cornell_box, four_objects, grass, "
+              "living_room, object_on_plane, sdf_model, terrain, town_square, tree)");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{generator: sdf_model, seed: -1}]\n"),
               "DIR/scenes/m/x.yaml:3:40: seed is -1; allowed: at least 0");
     EXPECT_EQ(f.errorOf("scene: m/x\ndoc: d\nsources: [{height_map: a.png, spacing_m: far}]\n"),
