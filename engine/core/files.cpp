@@ -13,6 +13,7 @@
 
 #include "engine/core/descriptor.h"
 #include "engine/core/error.h"
+#include "engine/core/near_file.h"
 #include "engine/core/output_files.h"
 
 namespace gfxrepro {
@@ -22,7 +23,9 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void fail(const char* what, const fs::path& path) {
-    throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(errno));
+    const int reason = errno;
+    throw Error(std::string("cannot ") + what + ' ' + path.string() + ": " + std::strerror(reason) +
+                (reason == ENOENT ? suggestedFile(path) : ""));
 }
 
 /// By one of the library's iterators, which name no folder when they fail.

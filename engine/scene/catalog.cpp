@@ -7,6 +7,7 @@
 #include "engine/core/checks.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/near_file.h"
 #include "engine/core/text.h"
 #include "engine/image/png_io.h"
 #include "engine/image/resample.h"
@@ -271,8 +272,8 @@ SceneSource Catalog::sourceOf(const Node& reference) const {
             throw Error(reference.location(), std::string("scene file ") + error.what());
         }
         if (fs::is_regular_file(source.file)) return source;
-        throw Error(reference.location(),
-                    "scene file '" + name + "' is not there; looked at " + source.file);
+        throw Error(reference.location(), "scene file '" + name + "' is not there; looked at " +
+                                              source.file + suggestedFile(source.file));
     }
     const SceneEntry& entry = entryNamed(reference);
     std::string tried;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/core/files.h"
+#include "engine/core/near_file.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
@@ -168,7 +169,9 @@ bool isNamedFromHere(const config::ExternalProgram& program, const std::string& 
 /// The beginning of a command line that measures the configs' programs as a build's folder has
 /// them. Rounds are the processes; without a seed two of one tell whether they differ.
 std::vector<std::string> runOfBuild(const CompareOptions& options, const fs::path& folder) {
-    if (!fs::is_directory(folder)) throw Error(folder.string() + " is no folder");
+    if (!fs::is_directory(folder)) {
+        throw Error(folder.string() + " is no folder" + suggestedFile(folder));
+    }
     const std::vector<std::string> names(options.inputs.begin() + 2, options.inputs.end());
     std::vector<std::string> calledByName, namedFromHere;
     bool areSeeded = true;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 
 #include "engine/core/files.h"
 #include "engine/core/text.h"
@@ -108,7 +109,8 @@ std::vector<std::string> paperFileNames() {
 
 std::vector<std::string> findPaperConfigs(const std::vector<std::string>& names) {
     const std::vector<fs::path> all = paperConfigs();
-    const std::vector<std::string> known = paperNames();
+    std::vector<std::string> known = paperNames();
+    std::ranges::copy(paperFileNames(), std::back_inserter(known));
     std::vector<std::string> found;
     for (const std::string& name : names) {
         if (isYamlFile(name)) {  // a config of the user's own

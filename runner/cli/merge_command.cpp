@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "engine/core/near_file.h"
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/reading_commands.h"
@@ -41,7 +42,8 @@ std::vector<fs::path> foldersOfRuns(const std::vector<std::string>& given) {
                 folders.push_back(shard);
             } else if (!isOfShards) {
                 tell("{}: {}\n", folder.string(),
-                     fs::exists(folder) ? "holds no run" : "there is no such folder");
+                     fs::exists(folder) ? "holds no run"
+                                        : "there is no such folder" + suggestedFile(folder));
             }
         }
     }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/files.h"
+#include "engine/core/near_file.h"
 #include "engine/core/text.h"
 #include "engine/metrics/statistics.h"
 #include "runner/records/csv.h"
@@ -100,7 +101,8 @@ run::Cost usualCost(const std::vector<run::Cost>& costs) {
 
 std::vector<PastCase> readPastCases(const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
-        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
+        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)" +
+                    suggestedFile(runDir));
     }
     run::requireModestFiles(runDir);
     const std::map<std::string, std::vector<run::Cost>> costs = journalCosts(runDir);

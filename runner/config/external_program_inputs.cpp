@@ -10,6 +10,7 @@
 
 #include "engine/core/checks.h"
 #include "engine/core/hash.h"
+#include "engine/core/near_file.h"
 #include "engine/core/text.h"
 #include "runner/config/sections.h"
 
@@ -168,7 +169,7 @@ std::vector<ProgramFile> filesOf(const ExternalProgram& program, const Placehold
     for (const std::string& file : program.files) {
         const fs::path path = (here / filled(file, values)).lexically_normal();
         if (!fs::is_regular_file(path)) {
-            throw Error("program: files: there is no file " + path.string());
+            throw Error("program: files: there is no file " + path.string() + suggestedFile(path));
         }
         add(path);
     }
@@ -179,7 +180,8 @@ void requireFiles(const Node& node, const ExternalProgram& program, const Placeh
     const auto require = [](const Node& named, const std::string& what, const fs::path& path) {
         std::error_code isAbsent;
         if (fs::is_regular_file(path, isAbsent)) return;
-        throw Error(named.location(), what + ": there is no file " + path.string());
+        throw Error(named.location(),
+                    what + ": there is no file " + path.string() + suggestedFile(path));
     };
     const ProgramKeys given = programTable().find(node);
     if (given.files) {

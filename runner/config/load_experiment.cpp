@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/core/checks.h"
+#include "engine/core/near_file.h"
 #include "engine/core/text.h"
 #include "runner/claims/kinds/kind.h"
 #include "runner/config/experiment.h"
@@ -179,7 +180,8 @@ class FileReader {
             return candidate;
         }
         throw Error(name.location(), "extends: no file '" + relative.string() + "' in " +
-                                         configsFolder_.string() + " or " + beside.string());
+                                         configsFolder_.string() + " or " + beside.string() +
+                                         suggestedFile(beside / relative));
     }
 
     static void addProfiles(const Node& profiles, Merged& result) {
@@ -307,8 +309,9 @@ fs::path configNamed(const Node& name, const fs::path& file, const fs::path& con
     for (const fs::path& folder : {configsFolder, file.parent_path()}) {
         if (fs::is_regular_file(folder / name.text())) return folder / name.text();
     }
-    throw Error(name.location(),
-                what + ": no file '" + name.text() + "' in " + configsFolder.string());
+    throw Error(name.location(), what + ": no file '" + name.text() + "' in " +
+                                     configsFolder.string() +
+                                     suggestedFile(configsFolder / name.text()));
 }
 
 /// The one swept axis that has all of the values; empty where none has, or several have.

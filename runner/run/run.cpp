@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "engine/core/near_file.h"
 #include "engine/core/text.h"
 #include "runner/records/images.h"
 #include "runner/run/manifest.h"
@@ -150,7 +151,8 @@ Plan planOfPart(const fs::path& file) {
 
 StoredRun readRunWith(Plan (*readPlan)(const fs::path&), const fs::path& runDir) {
     if (!fs::exists(runDir / "plan.json")) {
-        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)");
+        throw Error(runDir.string() + ": is not a run directory (it has no plan.json)" +
+                    suggestedFile(runDir));
     }
     if (!holdsRun(runDir)) {
         throw Error(runDir.string() + ": was planned, and not begun (it has no manifest.json)");

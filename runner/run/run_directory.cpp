@@ -21,6 +21,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
+#include "engine/core/near_file.h"
 #include "engine/core/output_files.h"
 #include "runner/records/images.h"
 #include "runner/records/records.h"
@@ -309,7 +310,8 @@ RunDirectory RunDirectory::create(const fs::path& path, std::uintmax_t fullJourn
 
 RunDirectory RunDirectory::open(const fs::path& path) {
     if (!fs::exists(path / "plan.json")) {
-        throw Error(path.string() + ": is not a run directory (it has no plan.json)");
+        throw Error(path.string() + ": is not a run directory (it has no plan.json)" +
+                    suggestedFile(path));
     }
     requirePlainFiles(path);
     RunDirectory directory(path, kFullJournalBytes);

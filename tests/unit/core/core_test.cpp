@@ -10,6 +10,7 @@
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
 #include "engine/core/json_shape.h"
+#include "engine/core/near_file.h"
 #include "engine/core/output_files.h"
 #include "engine/core/random.h"
 #include "engine/core/text.h"
@@ -31,6 +32,27 @@ TEST(Text, NearestNameFindsTyposOnly) {
     EXPECT_EQ(nearestName("banana", names), std::nullopt);
     EXPECT_EQ(suggestion("metod", names), "; did you mean 'method'?");
     EXPECT_EQ(suggestion("", names), "");
+}
+
+TEST(NearFile, IsWhatLiesBesideAMisspeltPath) {
+    const test::TemporaryFolder folder;
+    folder.write("models/bunny.off", "");
+    folder.write("models/run_1.yaml", "");
+    folder.write("models/.hidden", "");
+    const std::string at = folder.path().string() + "/";
+    EXPECT_EQ(suggestedFile(at + "models/buny.off"),
+              "; did you mean '" + at + "models/bunny.off'?");
+    EXPECT_EQ(suggestedFile(at + "modles/bunny.off"),
+              "; did you mean '" + at + "models/bunny.off'?");
+    EXPECT_EQ(suggestedFile(at + "Models"), "; did you mean '" + at + "models'?");
+    for (const char* other :
+         {"modles/none.off", "models/run_2.yaml", "models/.hiden", "models", "models/bunny.off",
+          "models/bunny.off/x", "models/beany.of", "models/many.off", "elsewhere"}) {
+        EXPECT_EQ(suggestedFile(at + other), "") << other;
+    }
+    EXPECT_EQ(test::errorText([&] { readFile(at + "models/bunny.of"); }),
+              "cannot read " + at + "models/bunny.of: No such file or directory; did you mean '" +
+                  at + "models/bunny.off'?");
 }
 
 TEST(Text, NumbersAreDecimalOnly) {
