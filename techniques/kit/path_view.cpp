@@ -38,6 +38,15 @@ std::optional<glm::vec3> pointOf(std::string_view text) {
     return point;
 }
 
+/// Behind all of the box as seen from there; 0 without a box.
+float farPlane(const scene::Box& box, const glm::vec3& position) {
+    float farthest = 0.0F;
+    for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
+        farthest = std::max(farthest, 1.01F * glm::distance(position, box.corner(corner)));
+    }
+    return farthest;
+}
+
 /// "X Y Z > X Y Z; …": keys from a point to another one, that hold the whole scene.
 std::optional<scene::CameraPath> pathOf(const scene::Scene& scene, const std::string& view) {
     if (view.find('>') == std::string::npos) return std::nullopt;
@@ -57,10 +66,7 @@ std::optional<scene::CameraPath> pathOf(const scene::Scene& scene, const std::st
         camera.position = *from;
         camera.target = *to;
         if (from->x == to->x && from->z == to->z) camera.up = {0.0F, 0.0F, -1.0F};
-        camera.farM = glm::distance(*from, *to);
-        for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
-            camera.farM = std::max(camera.farM, 1.01F * glm::distance(*from, box.corner(corner)));
-        }
+        camera.farM = std::max(glm::distance(*from, *to), farPlane(box, *from));
         camera.nearM = 1e-3F * camera.farM;
         path.keys.push_back(camera);
     }
@@ -96,7 +102,13 @@ scene::Camera cameraAtTime(const scene::Scene& scene, const std::string& view, d
     if (const auto direction = towardsEyeOf(view)) {
         return scene::framingCamera(scene.bounds(), aspect, *direction);
     }
-    if (const auto path = pathOf(scene, view)) return cameraAt(*path, time);
+    if (const auto path = pathOf(scene, view)) {
+        scene::Camera camera = cameraAt(*path, time);
+        // Between keys it leaves the straight line, along which their far planes hold the scene.
+        const float needed = farPlane(scene.bounds(), camera.position);
+        if (1.01F * camera.farM < needed) camera.farM = needed;
+        return camera;
+    }
     throw Error(
         fmt::format("the scene has no path or camera '{}'; paths: {}; cameras: {}; or "
                     "'AZIMUTH ELEVATION' in degrees, or 'X Y Z > X Y Z' from and to, with more "

@@ -244,6 +244,13 @@ TEST(PathView, LooksFromAPointToAnotherAndAlongAPathOfThem) {
               "another one");
 }
 
+TEST(PathView, HoldsTheWholeSceneWhereAPathSwingsOut) {
+    const std::string path = "0 0 2>0 0 0; 0 0 30>0 0 0; 0 0 30>0 0 0; 0 0 2>0 0 0";
+    const scene::Camera out = cameraAtTime(box(), path, 0.5, 1.0F);
+    EXPECT_GT(out.position.z, 33.0F);
+    EXPECT_GT(out.farM, glm::distance(out.position, {-1, -1, -1}));
+}
+
 TEST(PathView, NamesWhatThereIsWhenANameIsUnknown) {
     EXPECT_EQ(errorText([] { cameraFor(boxWithViews(), "back", 0, 1, 1.0F); }),
               "the scene has no path or camera 'back'; paths: 'round', 'through'; cameras: "
