@@ -192,6 +192,7 @@ class Division {
     explicit Division(const scene::Mesh& mesh) : mesh_(mesh), joined_(mesh.triangles.size()) {
         measureTriangles();
         findBorders();
+        creaseAroundPlanes();
         sides_ = bendingSides();
         for (const Border& border : borders_) {
             if (!border.isCrease && sides_[border.a] == sides_[border.b])
@@ -218,9 +219,14 @@ class Division {
     dvec3 corner(std::uint32_t triangle, int k) const {
         return dvec3(mesh_.positions[mesh_.triangles[triangle][k]]);
     }
+    double leastArea() const {
+        return double{kLeastPartShare} * std::accumulate(areas_.begin(), areas_.end(), 0.0);
+    }
     void measureTriangles();
+    bool isShadedFlat(std::uint32_t triangle) const;
     void findBorders();
     Border borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from, const dvec3& to) const;
+    void creaseAroundPlanes();
     std::vector<std::int8_t> bendingSides() const;
     /// Weighted by area.
     struct PartSum {
@@ -234,6 +240,7 @@ class Division {
     const scene::Mesh& mesh_;
     std::vector<dvec3> normals_;  // of triangles, turned as their vertices'; 0: degenerate
     std::vector<double> areas_;
+    std::vector<bool> isShadedFlat_;
     std::vector<Border> borders_;
     std::vector<std::int8_t> sides_;  // −1: concave
     Joined joined_;
@@ -251,7 +258,18 @@ void Division::measureTriangles() {
         }
         normals_.push_back(normal);
         areas_.push_back(0.5 * twice);
+        isShadedFlat_.push_back(isShadedFlat(t));
     }
+}
+
+/// By its vertices: one normal, that of its plane.
+bool Division::isShadedFlat(std::uint32_t triangle) const {
+    if (mesh_.normals.empty()) return false;
+    const glm::uvec3& corners = mesh_.triangles[triangle];
+    const glm::vec3& normal = mesh_.normals[corners.x];
+    if (normal != mesh_.normals[corners.y] || normal != mesh_.normals[corners.z]) return false;
+    const double along = glm::dot(dvec3(normal), normals_[triangle]);
+    return along > (1.0 - kFlatRad * kFlatRad) * glm::length(dvec3(normal));
 }
 
 Border Division::borderOf(std::uint32_t a, std::uint32_t b, const dvec3& from,
@@ -299,6 +317,22 @@ void Division::findBorders() {
     }
 }
 
+/// A large plane ends at a crease, at whatever angle, where both sides are shaded flat.
+void Division::creaseAroundPlanes() {
+    Joined planes(areas_.size());
+    for (const Border& border : borders_) {
+        if (border.bend == 0.0) planes.join(border.a, border.b);
+    }
+    std::vector<double> areaOf(areas_.size(), 0.0);
+    for (std::uint32_t t = 0; t < areas_.size(); ++t) areaOf[planes.of(t)] += areas_[t];
+    const double least = leastArea();
+    for (Border& border : borders_) {
+        if (border.bend == 0.0 || !isShadedFlat_[border.a] || !isShadedFlat_[border.b]) continue;
+        const double larger = std::max(areaOf[planes.of(border.a)], areaOf[planes.of(border.b)]);
+        border.isCrease = border.isCrease || larger >= least;
+    }
+}
+
 /// −1 where the surface is concave, else 1.
 std::vector<std::int8_t> Division::bendingSides() const {
     std::vector<double> bends(areas_.size(), 0.0);
@@ -338,11 +372,9 @@ std::map<std::uint32_t, Division::PartSum> Division::partSums() {
 
 /// Smallest first, each with what it has the longest border with, but none across a crease with a
 /// large plane, which would be one no more. Then those in about one plane, and the rest with each
-/// other: parts of two walls have no cluster in common.
+/// other, but for planes of one normal: parts of two walls have no cluster in common.
 void Division::joinSmallOnes() {
-    double total = 0.0;
-    for (const double area : areas_) total += area;
-    const double least = double{kLeastPartShare} * total;
+    const double least = leastArea();
     std::map<std::uint32_t, PartSum> sums = partSums();
     const auto smallOnes = [&] {
         std::vector<std::pair<double, std::uint32_t>> small;
@@ -389,8 +421,21 @@ void Division::joinSmallOnes() {
         joined_.join(part, partIn.emplace(plane, part).first->second);
     }
     sums = partSums();
-    const auto rest = smallOnes();
-    for (std::size_t i = 1; i < rest.size(); ++i) joined_.join(rest[0].second, rest[i].second);
+    // Flat ones of one normal, which a cluster would have in common, go apart: the first of each
+    // normal, and all that bends, is one part, the second of each another, …
+    std::map<std::array<long, 3>, std::size_t> planesOf;
+    std::vector<std::uint32_t> together;
+    for (const auto& [area, part] : smallOnes()) {
+        const dvec3 normal = sums[part].normal / std::max(area, 1e-300);
+        const std::array<long, 3> way = {std::lround(normal.x * kNormalSteps),
+                                         std::lround(normal.y * kNormalSteps),
+                                         std::lround(normal.z * kNormalSteps)};
+        const std::size_t at = sums[part].isFlat() ? planesOf[way]++ : 0;
+        if (at < together.size())
+            joined_.join(together[at], part);
+        else
+            together.push_back(part);
+    }
 }
 
 /// The triangles of one part, with the vertices that they use.

@@ -51,7 +51,7 @@ float reflectivityOf(const scene::Material& material, float metallic);
 float in255ths(float value);
 
 /// Between triangles whose planes turn by more than this, about 50°, a surface is not smooth: above
-/// a tube of eight sides, below a box.
+/// a tube of eight sides, below a box. Where both are shaded flat, a large plane ends at any angle.
 constexpr float kCreaseCosine = 0.64F;
 /// Parts of a smaller share of their object's area are joined with what they border on most.
 constexpr float kLeastPartShare = 0.05F;
@@ -60,8 +60,8 @@ constexpr float kLeastPartShare = 0.05F;
 /// (vertices at the same place are one), has no crease inside, and bends to one side: inside of a
 /// bowl and outside are two, however smooth its rim is. The side is the sign of the mean curvature,
 /// by majority over neighbouring triangles; normals say which side is out. Small parts join what
-/// they border on, but no large plane across a crease, else those in about the same plane, and
-/// what is small then is one part together.
+/// they border on, but no large plane across a crease, else those in about the same plane. What is
+/// small then is one part together, but for planes of one normal, which are apart.
 struct Parts {
     std::vector<std::uint32_t> ofTriangle;
     std::vector<std::uint8_t> isConcave;  // by part: most of its area

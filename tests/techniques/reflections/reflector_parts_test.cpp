@@ -73,7 +73,19 @@ TEST(ReflectorParts, ABallIsOne) {
         const float angle = glm::pi<float>() * static_cast<float>(k) / 24.0F;
         outline.emplace_back(std::sin(angle), -std::cos(angle));
     }
-    EXPECT_EQ(countOf(partsOf(turned(outline))), 1U);
+    const scene::Mesh smooth = turned(outline);
+    EXPECT_EQ(countOf(partsOf(smooth)), 1U);
+    scene::Mesh flat;  // shaded flat, of triangles that are no planes by themselves
+    for (const glm::uvec3& corners : smooth.triangles) {
+        const auto first = static_cast<unsigned>(flat.positions.size());
+        for (int k = 0; k < 3; ++k) flat.positions.push_back(smooth.positions[corners[k]]);
+        const glm::vec3 a = flat.positions[first];
+        const glm::vec3 normal =
+            glm::cross(flat.positions[first + 1] - a, flat.positions[first + 2] - a);
+        flat.normals.insert(flat.normals.end(), 3, normal);
+        flat.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    EXPECT_EQ(countOf(partsOf(flat)), 1U);
 }
 
 TEST(ReflectorParts, ABoxHasSixSides) {
@@ -124,6 +136,25 @@ TEST(ReflectorParts, SmallOnesAreJoinedWithinAPlaneAndNotFromWallToWall) {
     }
 }
 
+TEST(ReflectorParts, SmallWallsOfOneNormalAreApartBesideALargeFloor) {
+    scene::MeshBuilder builder;
+    builder.addQuad({-50, 0, 50}, {50, 0, 50}, {50, 0, -50}, {-50, 0, -50});
+    for (int i = 0; i < 25; ++i) {  // tiles of two walls, one behind the other, and of one across
+        const float x = static_cast<float>(i / 5), y = static_cast<float>(1 + i % 5);
+        const float far = x + 0.9F, up = y + 0.9F;
+        builder.addQuad({x, y, 0}, {far, y, 0}, {far, up, 0}, {x, up, 0});
+        builder.addQuad({x + 9, y, -9}, {far + 9, y, -9}, {far + 9, up, -9}, {x + 9, up, -9});
+        builder.addQuad({-9, y, far}, {-9, y, x}, {-9, up, x}, {-9, up, far});
+    }
+    const Parts parts = partsOf(builder.take("tiles", 0));
+    ASSERT_EQ(countOf(parts), 3U);  // the floor, and no two walls of one normal together
+    for (std::size_t t = 2; t < parts.ofTriangle.size(); t += 6) {
+        EXPECT_NE(parts.ofTriangle[t], 0U) << t;
+        EXPECT_NE(parts.ofTriangle[t + 2], 0U) << t;
+        EXPECT_NE(parts.ofTriangle[t], parts.ofTriangle[t + 2]) << t;
+    }
+}
+
 TEST(ReflectorParts, ThinSidesLeaveAMirrorPlanar) {
     scene::MeshBuilder builder;
     builder.addBox(glm::vec3(0.0F), glm::vec3(1.0F, 1.0F, 0.01F));
@@ -137,6 +168,19 @@ TEST(ReflectorParts, ThinSidesLeaveAMirrorPlanar) {
             EXPECT_EQ(parts.ofTriangle[t] == parts.ofTriangle[u], z == other) << t << ' ' << u;
         }
     }
+}
+
+TEST(ReflectorParts, AFlatShadedBevelLeavesAMirrorPlanar) {
+    scene::MeshBuilder builder;
+    builder.addQuad({-1, 0, 1}, {1, 0, 1}, {1, 0, -1}, {-1, 0, -1});
+    builder.addQuad({1, 0, 1}, {1.01F, -0.01F, 1}, {1.01F, -0.01F, -1}, {1, 0, -1});  // 45°
+    scene::Mesh mesh = builder.take("mirror", 0);
+    EXPECT_EQ(partsOf(mesh).ofTriangle, (std::vector<std::uint32_t>{0, 0, 1, 1}));
+    // Bent by its normals, it is one surface.
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        if (mesh.positions[v].x == 1.0F) mesh.normals[v] = glm::normalize(glm::vec3(0.4F, 1, 0));
+    }
+    EXPECT_EQ(countOf(partsOf(mesh)), 1U);
 }
 
 TEST(ReflectorParts, NothingAndDegenerateTrianglesAreNoError) {
