@@ -38,13 +38,13 @@ struct Nightly : FolderTest {
         if (!reason.empty()) arguments.insert(arguments.end(), {"--accept", reason});
         const fs::path config =
             writeMockConfig(folder, "params: {busy_ms: 20}\n" + measure(), kTechnique);
-        arguments.insert(arguments.end(), {"--rounds", isTimed ? "8" : "2", "--cases", "1",
-                                           "--program", bundle(extraUs), config});
+        arguments.insert(arguments.end(),
+                         {"--rounds", isTimed ? "8" : "2", "--program", bundle(extraUs), config});
         return runProgram(arguments);
     }
-    /// A night of a bundle whose program is this script, of two cases and those of `second`.
+    /// A night of a bundle whose program is this script, of two cases.
     ProcessResult nightOf(const std::string& script,
-                          const std::vector<std::string>& options = {"--cases", "2"}) const {
+                          const std::vector<std::string>& options = {}) const {
         const fs::path program = writeProgram(folder, "broken/gfxrepro", "#!/bin/sh\n" + script);
         const fs::path config =
             writeMockConfig(folder, "sweep: {busy_ms: [18, 22]}\n" + measure(), kTechnique);
@@ -53,7 +53,6 @@ struct Nightly : FolderTest {
         arguments.insert(arguments.end(), options.begin(), options.end());
         arguments.insert(arguments.end(), {"--rounds", isTimed ? "8" : "2", "--program",
                                            program.parent_path(), config});
-        if (!second.empty()) arguments.push_back(second);
         return runProgram(arguments);
     }
     /// The program that later nights are compared with.
@@ -75,7 +74,6 @@ struct Nightly : FolderTest {
     std::string shade = "0.5";
     bool isCrashing = false;
     bool isTimed = false;
-    std::string second;
 };
 
 TEST_F(Nightly, TheFirstNightIsWhatLaterOnesAreComparedWith) {
@@ -96,86 +94,41 @@ TEST_F(Nightly, TheFirstNightLandsNothingThatCrashes) {
 
 const std::string kMock = GFXREPRO_MOCK_PROGRAM " \"$@\"";
 
-/// Programs that measure, and find everything well: of two runs or by turns, silently, with a file
-/// that tells of tests, or with all that they found in it.
-const std::string kBlind[] = {
-    "[ $1 != compare ] || exit 0\nexec " + kMock + '\n',
-    "[ $1 != compare ] || { " + kMock + "; exit 0; }\nexec " + kMock + '\n',
-    "case \"$*\" in *--binaries*) exit 0;; esac\nexec " + kMock + '\n',
-    "case \"$*\" in *--binaries*) while [ $1 != --out ]; do shift; done; mkdir -p \"$2\"\n"
-    "echo '<testsuite name=\"\" tests=\"4\" failures=\"1\">' >\"$2/junit.xml\"; exit 1;; "
-    "esac\nexec " +
-        kMock + '\n',
-    "case \"$*\" in *--binaries*) " + kMock + "; exit 0;; esac\nexec " + kMock + '\n'};
-
 TEST_F(Nightly, ABuildThatSaysNothingNeverLands) {
     const ProcessResult first = endedWith(2, nightOf("exit 0\n"));
-    EXPECT_THAT(first.err, HasSubstr("/first has no record of some case; the configs ask for 2\n"));
-    for (const std::string& blind : kBlind) {
-        const ProcessResult result = nightOf(blind);
-        EXPECT_EQ(result.exitCode, 2) << blind << result.out << result.err;
-    }
+    EXPECT_NE(first.err.find("/first has no record of some case\n"), std::string::npos)
+        << first.err;
     EXPECT_FALSE(fs::exists(state + "/landed"));
     ASSERT_EQ(night(0).exitCode, 0);
     EXPECT_EQ(nightOf("exit 0\n").exitCode, 2);
     EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
 }
 
-TEST_F(Nightly, TheLastBuildJudgesAndTonightsMustFindWhatItFinds) {
+TEST_F(Nightly, TheLastBuildJudgesAndEndsAsItsReportTells) {
     ASSERT_EQ(night(0).exitCode, 0);
-    for (const std::string& script : {kBlind[1], kBlind[4]}) {
-        const ProcessResult blind = nightOf(script);
-        EXPECT_EQ(blind.exitCode, 2) << script << blind.out << blind.err;
-        EXPECT_THAT(blind.err, HasSubstr("(code, tests, failures)"));
-        EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
-    }
-    // Nor where it is slower on purpose; one that is slower is found, whatever it says itself.
-    const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + kBlind[1];
+    const std::string blind =
+        "[ $1 != compare ] || { " + kMock + "; exit 0; }\nexec " + kMock + '\n';
+    const std::string slow = "export GFXREPRO_MOCK_EXTRA_MS=15\n" + blind;
     isTimed = true;
-    EXPECT_EQ(nightOf(slow, {"--accept", "it is right"}).exitCode, 2);
-    EXPECT_FALSE(fs::exists(state + "/accepted.csv"));
-    EXPECT_EQ(nightOf(slow).exitCode, 1);
-    EXPECT_THAT(landed(), HasSubstr("EXTRA_MS=0e-3 "));
+    EXPECT_EQ(nightOf(slow).exitCode, 1) << "whatever it says itself";
+    EXPECT_NE(landed().find("EXTRA_MS=0e-3 "), std::string::npos);
     // A judge that landed before, and ends with 0 whatever it found.
-    folder.write("state/landed/gfxrepro", "#!/bin/sh\n" + kBlind[1]);
+    folder.write("state/landed/gfxrepro", "#!/bin/sh\n" + blind);
     const ProcessResult judged = endedWith(2, nightOf(slow));
-    EXPECT_THAT(judged.err, HasSubstr("nightly: the comparison ends with 0, and tells of "));
-    isTimed = false;
-    EXPECT_EQ(nightOf("exec " + kMock + '\n').exitCode, 2) << "nor lands what is no slower";
-    EXPECT_EQ(landed(), "#!/bin/sh\n" + kBlind[1]);
+    EXPECT_NE(judged.err.find("nightly: the comparison ends with 0, and tells of "),
+              std::string::npos)
+        << judged.err;
+    EXPECT_EQ(landed(), "#!/bin/sh\n" + blind);
 }
 
-TEST_F(Nightly, AJudgeOfTheFirstConfigAloneIsNone) {
-    second = folder.write(
-        "second.yaml",
-        "sweep_of: second\ntitle: t\ntechnique: mock_on_cpu\nsweep: {busy_ms: [5]}\n" + measure());
-    const std::string half =
-        "case \"$*\" in *--binaries*second.yaml*) exit 0;; esac\nexec " + kMock + '\n';
-    EXPECT_EQ(nightOf(half, {"--cases", "3"}).exitCode, 2);
-    EXPECT_FALSE(fs::exists(state + "/landed"));
-    ASSERT_EQ(nightOf("exec " + kMock + '\n', {"--cases", "3"}).exitCode, 0);
-    EXPECT_EQ(nightOf(half, {}).exitCode, 2);
-    EXPECT_EQ(landed(), "#!/bin/sh\nexec " + kMock + '\n');
-}
-
-TEST_F(Nightly, WhatTheConfigsAskForIsCountedByAnotherBuild) {
-    const std::string mock = "exec " + kMock;
-    const std::string fewer = "[ $1 != run ] || " + mock + " --only busy_ms=22\n" + mock + '\n';
-    EXPECT_EQ(nightOf(fewer).exitCode, 2);
-    EXPECT_EQ(nightOf(fewer, {}).exitCode, 2);
-    EXPECT_FALSE(fs::exists(state + "/landed"));
-    const ProcessResult first = endedWith(0, nightOf(mock + '\n', {}));
-    EXPECT_EQ(first.err.find("nightly: no other build has counted the cases of the configs: "
-                             "tonight's says 2; --cases N says it otherwise\n"),
-              0U)
-        << first.err;
-    const ProcessResult fix = endedWith(2, nightOf(fewer, {"--fix"}));
-    EXPECT_THAT(fix.err, HasSubstr("/first has no record of some case; the configs ask for 2\n"));
-    EXPECT_EQ(nightOf(fewer).exitCode, 1) << "lost, compared with the last build";
-    EXPECT_THAT(landed(), Not(HasSubstr("--only")));
-    EXPECT_EQ(nightOf(mock + "\n\n", {"--fix"}).exitCode, 0);
-    EXPECT_EQ(nightOf(fewer, {"--fix", "--cases", "1"}).exitCode, 0) << "as it was said";
-    EXPECT_THAT(landed(), HasSubstr("--only"));
+TEST_F(Nightly, WhatIsLostIsFoundByTheLastBuild) {
+    const std::string mock = "exec " + kMock + '\n';
+    ASSERT_EQ(nightOf(mock).exitCode, 0);
+    const std::string fewer = "[ $1 != run ] || exec " + kMock + " --only busy_ms=22\n" + mock;
+    EXPECT_EQ(nightOf(fewer).exitCode, 1);
+    EXPECT_EQ(landed().find("--only"), std::string::npos);
+    EXPECT_EQ(nightOf(fewer, {"--fix"}).exitCode, 0) << "as it was said";
+    EXPECT_NE(landed().find("--only"), std::string::npos);
 }
 
 /// The step of the workflow that shows a night.
