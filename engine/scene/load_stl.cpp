@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,7 +24,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::size_t kStlHeaderBytes = 84;  // 80 of text, and the count of facets
-constexpr std::size_t kFacetBytes = 50;      // normal, three corners, two bytes of colour
+constexpr std::size_t kFacetBytes = 50;      // normal, three corners, two bytes
 
 std::uint64_t declaredBytes(std::string_view bytes) {
     std::uint32_t facets = 0;
@@ -40,47 +39,6 @@ bool isTextStl(std::string_view bytes) {
     bytes = withoutByteOrderMark(bytes);
     const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
     return lowerCase(bytes.substr(begin, 5)) == "solid";
-}
-
-/// STL sets no colours; two ways are usual. Materialise's header has "COLOR=" and the whole's red,
-/// green, blue and alpha: its facets have one of their own where bit 15 is 0, red in the lowest
-/// bits. In VisCAM's and SolidView's files facets have one where bit 15 is 1, blue in the lowest.
-class FacetColours {
-  public:
-    explicit FacetColours(std::string_view header, LeftOut& leftOut) : leftOut_(leftOut) {
-        constexpr std::string_view kWhole = "COLOR=";
-        const std::size_t at = header.find(kWhole);
-        if (at != header.npos && at + kWhole.size() + 4 <= header.size()) {
-            const auto value = [&](std::size_t i) {
-                return static_cast<unsigned char>(header[at + kWhole.size() + i]);
-            };
-            whole_.emplace(value(0), value(1), value(2));
-            *whole_ /= 255.0F;
-            leftOut_.add("the alpha of the header's COLOR=", value(3) == 255 ? 0 : 1);
-        }
-        leftOut_.add("the header's MATERIAL=", header.find("MATERIAL=") == header.npos ? 0 : 1);
-    }
-
-    /// sRGB, of the facet whose last two bytes these are; none: it has none.
-    std::optional<glm::vec3> of(std::uint16_t bits) {
-        if (whole_ && (bits & 0x8000U) != 0) return whole_;
-        const glm::vec3 fromLow(bits & 31U, bits >> 5 & 31U, bits >> 10 & 31U);
-        if (whole_) return fromLow / 31.0F;
-        if ((bits & 0x8000U) != 0) return glm::vec3(fromLow.b, fromLow.g, fromLow.r) / 31.0F;
-        leftOut_.add("the attribute of a facet", bits == 0 ? 0 : 1);
-        return std::nullopt;
-    }
-
-  private:
-    std::optional<glm::vec3> whole_;
-    LeftOut& leftOut_;
-};
-
-void setColour(Mesh& mesh, const glm::uvec3& triangle, const glm::vec3& srgb) {
-    mesh.colors.resize(mesh.positions.size(), glm::vec3(1.0F));
-    for (int i = 0; i < 3; ++i) {
-        for (int c = 0; c < 3; ++c) mesh.colors[triangle[i]][c] = image::linearOf(srgb[c]);
-    }
 }
 
 std::uint32_t addCorner(Mesh& mesh, const glm::vec3& position) {
@@ -98,7 +56,6 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, Anchor& anchor,
             std::max<std::uint64_t>(needed, kStlHeaderBytes)));
     }
     leftOut.add("a byte behind the facets", bytes.size() - needed);
-    FacetColours colours(bytes.substr(0, 80), leftOut);
     Mesh mesh;
     mesh.positions.reserve((needed - kStlHeaderBytes) / kFacetBytes * 3);
     for (std::size_t at = kStlHeaderBytes; at < needed; at += kFacetBytes) {
@@ -118,9 +75,8 @@ Mesh binaryMesh(std::string_view bytes, const std::string& file, Anchor& anchor,
         mesh.triangles.push_back(triangle);
         std::uint16_t bits = 0;
         std::memcpy(&bits, bytes.data() + at + 48, sizeof(bits));
-        if (const auto colour = colours.of(bits)) setColour(mesh, triangle, *colour);
+        leftOut.add("the attribute of a facet", bits == 0 ? 0 : 1);  // some write colours there
     }
-    if (!mesh.colors.empty()) mesh.colors.resize(mesh.positions.size(), glm::vec3(1.0F));
     return mesh;
 }
 

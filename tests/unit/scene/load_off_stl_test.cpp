@@ -162,26 +162,6 @@ TEST_F(LoadOffStl, SaysWhatIsLeftOutOfStl) {
     EXPECT_EQ(stl(binaryStl(3, "by x") + "12").warnings,
               (Lines{"left out: a byte behind the facets (2 times)",
                      "left out: the attribute of a facet (2 times)"}));
-    EXPECT_EQ(
-        stl(binaryStl(1, "COLOR=\xff\0\0\x7f,MATERIAL=abcdefghijkl"s)).warnings,
-        (Lines{"left out: the alpha of the header's COLOR=", "left out: the header's MATERIAL="}));
-}
-
-TEST_F(LoadOffStl, ReadsColoursOfStl) {
-    using Colours = std::vector<glm::vec3>;
-    EXPECT_EQ(stl(binaryStl(2)).meshes.at(0).colors, Colours{});
-    // VisCAM: blue in the lowest bits, where the highest is 1; other facets have none.
-    const glm::vec3 white(1), red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
-    const Scene own = stl(binaryStl(2, "by x", "\x1f\x80"));
-    EXPECT_EQ(own.meshes.at(0).colors, (Colours{white, white, white, blue, blue, blue}));
-    EXPECT_EQ(own.warnings, Lines{});
-    // Materialise: red in the lowest bits, where the highest is 0; other facets have the whole's.
-    const std::string head = "a COLOR=\0\xff\0\xff"s;
-    const Scene whole = stl(binaryStl(2, head, "\x00\x80"s));
-    EXPECT_EQ(whole.meshes.at(0).colors.at(3), green);
-    EXPECT_EQ(whole.meshes.at(0).colors.at(0), glm::vec3(0));
-    EXPECT_EQ(stl(binaryStl(2, head, "\x1f\0"s)).meshes.at(0).colors.at(5), red);
-    EXPECT_NEAR(stl(binaryStl(2, head, "\x10\0"s)).meshes.at(0).colors.at(5).r, 0.2292F, 1e-3F);
 }
 
 TEST_F(LoadOffStl, RefusesBrokenStl) {
