@@ -31,16 +31,12 @@ constexpr Colour kCoolWarm[] = {
     {203, 62, 56},   {180, 4, 38},
 };
 
-constexpr Colour kGrey[] = {{0, 0, 0}, {255, 255, 255}};
-
 constexpr Colour kNotANumber{0, 255, 0};
 
 std::span<const Colour> coloursOf(ColourMap map) {
     switch (map) {
         case ColourMap::Magma:
             return kMagma;
-        case ColourMap::Grey:
-            return kGrey;
         case ColourMap::CoolWarm:
             break;
     }

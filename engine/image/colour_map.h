@@ -10,7 +10,6 @@ namespace gfxrepro::image {
 
 enum class ColourMap {
     Magma,     // black, purple, orange, pale yellow: of magnitudes
-    Grey,      // black to white
     CoolWarm,  // blue, grey, red: of what has a sign, grey in the middle
 };
 

@@ -39,12 +39,6 @@ float aces(float value) {
     return static_cast<float>((c.n2 * x * x + c.n1 * x) / (c.d2 * x * x + c.d1 * x + c.d0));
 }
 
-/// Of linear Rec. 709, or of one channel.
-float luminanceOf(std::span<const float> colour) {
-    if (colour.size() < 3) return colour[0];
-    return 0.2126F * colour[0] + 0.7152F * colour[1] + 0.0722F * colour[2];
-}
-
 }  // namespace
 
 ImageF withStraightAlpha(ImageF image) {
@@ -68,10 +62,8 @@ ImageF toneMapped(const ImageF& linear, float exposureStops, ToneMap toneMap) {
         for (float& value : colour) {  // not-a-number becomes 0
             value = std::min(std::max(0.0F, scale * value), std::numeric_limits<float>::max());
         }
-        const float luminance = toneMap == ToneMap::Reinhard ? luminanceOf(colour) : 0.0F;
         for (float& value : colour) {
             if (toneMap == ToneMap::Aces) value = aces(value);
-            if (toneMap == ToneMap::Reinhard) value /= 1.0F + luminance;
             value = std::min(value, 1.0F);
         }
     }

@@ -17,9 +17,8 @@ std::array<float, 256> srgbDecoding();
 // What a display shows of light without bounds.
 
 enum class ToneMap {
-    None,      // what is above 1 is clamped
-    Reinhard,  // by luminance: c / (1 + Y)
-    Aces,      // a curve a channel that looks like film
+    None,  // what is above 1 is clamped
+    Aces,  // a curve a channel that looks like film
 };
 
 /// (n2·x² + n1·x) / (d2·x² + d1·x + d0): Narkowicz 2015, "ACES Filmic Tone Mapping Curve", for x

@@ -225,10 +225,6 @@ struct ImageConvertOptions {
     std::string in;
     std::string out;
     double exposureStops = 0.0;
-    std::string toneMap = "none";  // none | reinhard | aces
-    std::string channels;          // "Z" or "N.X,N.Y,N.Z"; empty: the colours
-    std::string range;             // "low,high" of one channel
-    std::string colours = "auto";  // auto | magma | grey | cool_warm
 };
 
 struct ImageCropOptions {
