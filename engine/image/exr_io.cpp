@@ -9,7 +9,6 @@
 #include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
-#include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStdIO.h>
 #include <OpenEXR/ImfStringAttribute.h>
@@ -236,35 +235,6 @@ ExrPixelType pixelTypeOf(Imf::PixelType type) {
                                 : ExrPixelType::Uint;
 }
 
-bool hasChroma(const Imf::Header& header) {
-    const Imf::ChannelList& channels = header.channels();
-    return channels.findChannel("Y") != nullptr &&
-           (channels.findChannel("RY") != nullptr || channels.findChannel("BY") != nullptr);
-}
-
-/// Puts R, G and B in the place of Y, RY and BY, as the library makes them: by the luminance of the
-/// file's primaries, chroma filtered to every pixel.
-void addColours(std::span<const std::byte> bytes, const std::string& name, ExrImage& image) {
-    MemoryStream stream(bytes, name);
-    Imf::RgbaInputFile file(stream, kCallingThreadOnly);
-    ImageF colours(image.width(), image.height(), 3);
-    std::vector<Imf::Rgba> pixels(colours.values().size() / 3);
-    const Imath::Box2i window = file.dataWindow();
-    file.setFrameBuffer(Imf::ComputeBasePointer(pixels.data(), window), 1,
-                        static_cast<std::size_t>(image.width()));
-    file.readPixels(window.min.y, window.max.y);
-    std::erase_if(image.channels, [](const ExrImage::Channel& channel) {
-        return channel.name == "Y" || channel.name == "RY" || channel.name == "BY";
-    });
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        colours.values()[3 * i] = pixels[i].r;
-        colours.values()[3 * i + 1] = pixels[i].g;
-        colours.values()[3 * i + 2] = pixels[i].b;
-    }
-    image.add(colours, {"R", "G", "B"});
-    image.notes.emplace_back("its luminance and chroma (Y, RY, BY) are read as R, G, B");
-}
-
 /// Makes R, G and B those of Rec. 709's primaries, what a file without chromaticities has.
 void takePrimaries(const Imf::Chromaticities& given, const std::string& name, ExrImage& image) {
     if (given == Imf::Chromaticities()) return;
@@ -391,7 +361,6 @@ ExrImage decoded(std::span<const std::byte> bytes, const std::string& name) {
         channel.values =
             repeated(channel.values, width, height, stored.xSampling, stored.ySampling);
     }
-    if (hasChroma(header)) addColours(bytes, name, image);
     if (Imf::hasChromaticities(header)) takePrimaries(Imf::chromaticities(header), name, image);
     noteOthers(header, image);
     for (auto i = header.begin(); i != header.end(); ++i) {
@@ -541,9 +510,11 @@ std::vector<std::string> ExrImage::colourNames() const {
     std::vector<std::string> used{"R", "G", "B"};
     const auto isThere = [this](const std::string& name) { return find(name) != nullptr; };
     if (!std::ranges::all_of(used, isThere)) {
-        // Beside these Y and Z are no luminance and no depth: a colour (CIE XYZ), a place.
+        // Beside these Y and Z are no luminance and no depth: a colour (CIE XYZ, with chroma), a
+        // place.
         const bool isPart = std::ranges::any_of(channels, [](const Channel& channel) {
-            return channel.name.size() == 1 && std::strchr("XRGB", channel.name[0]) != nullptr;
+            return channel.name == "RY" || channel.name == "BY" ||
+                   (channel.name.size() == 1 && std::strchr("XRGB", channel.name[0]) != nullptr);
         });
         if (!isPart && !isThere("Y") && isThere("Z")) return {"Z"};
         if (isPart || !isThere("Y")) {

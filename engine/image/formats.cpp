@@ -171,39 +171,15 @@ std::optional<Part> behindJpeg(Part bytes) {
     return bytes.subspan(end + 2);
 }
 
-/// What the marker of a frame says of a JPEG file (T.81, Table B.1).
-std::string_view codingOf(int frame) {
-    if (frame >= 0xC9) return frame % 4 == 3 ? "lossless and arithmetic" : "arithmetic";
-    if (frame % 4 == 3) return "lossless";
-    return frame >= 0xC5 ? "hierarchical" : "Huffman";
-}
-
-/// stb says of all that it does not read that it does not know the file. Of four inks, which
-/// printers have, it makes colours by the Adobe marker alone, and by a formula.
-void requireUsualJpeg(Part bytes, const std::string& name) {
-    bool hasFrame = false;
-    for (int frame = 0xC0; frame <= 0xCF; ++frame) {
-        if (frame == 0xC4 || frame == 0xC8 || frame == 0xCC) continue;  // these are none
+/// Of four inks, which printers have, stb makes colours by the Adobe marker alone, and by a
+/// formula.
+void requireNoInks(Part bytes, const std::string& name) {
+    for (const int frame : {0xC0, 0xC1, 0xC2}) {
         for (const Part head : segmentsOf(bytes, frame, "")) {
-            hasFrame = true;
-            const std::string_view coding = codingOf(frame);
-            const std::size_t bits = numberAt(head, 0, 1, false);
-            const std::size_t channels = numberAt(head, 5, 1, false);
-            if (coding == "Huffman" && bits == 8 && (channels == 1 || channels == 3)) continue;
-            if (coding == "Huffman" && bits == 8 && channels == 4) {
-                throw Error(name + ": its colours are four inks (CMYK); grey and RGB are allowed");
-            }
-            throw Error(
-                fmt::format("{}: a JPEG file of {} coding, {} bits and {} components; allowed: "
-                            "Huffman coding, 8 bits and 1 component (grey) or 3 (colours)",
-                            name, coding, bits, channels));
+            if (numberAt(head, 5, 1, false) != 4) continue;
+            throw Error(name + ": its colours are four inks (CMYK); grey and RGB are allowed");
         }
     }
-    if (hasFrame) return;
-    throw Error(
-        fmt::format("{}: no JPEG file that is whole: in its {} bytes no frame (FF C0 to "
-                    "FF C2) says its size",
-                    name, bytes.size()));
 }
 
 }  // namespace
@@ -230,8 +206,8 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
     int height = 0;
     int channels = 0;
     const bool isJpeg = textOf(bytes).starts_with("\xFF\xD8");
+    if (isJpeg) requireNoInks(bytes, name);
     if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
-        if (isJpeg) requireUsualJpeg(bytes, name);
         throw Error(name + ": " + stbi_failure_reason());
     }
     checkDeclaredSize(width, height, 4, bytes.size(), name, kMaxSidePx, use);
@@ -242,7 +218,6 @@ Image8 decodeByStb(std::span<const std::byte> bytes, const std::string& name, Im
                         "of the picture (FF D9)",
                         name, bytes.size()));
     }
-    if (isJpeg) requireUsualJpeg(bytes, name);
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(data, size, &width, &height, &channels, channels), stbi_image_free);
     if (pixels == nullptr) {
