@@ -232,6 +232,48 @@ std::vector<double> tileMeans(const image::ImageF& picture) {
     }
 }
 
+image::ImageF tileDifferences(std::span<const std::vector<double>> a,
+                              std::span<const std::vector<double>> b, int width, int height,
+                              int channels) {
+    const int columns = (width + kMeanTilePx - 1) / kMeanTilePx;
+    const int colours = channels < 3 ? 1 : 3;
+    const auto meanOf = [&](const std::vector<double>& sample, int x, int y) {
+        const int tile = y / kMeanTilePx * columns + x / kMeanTilePx;
+        const auto first = sample.begin() + static_cast<std::ptrdiff_t>(tile) * channels;
+        return std::accumulate(first, first + colours, 0.0) / colours;
+    };
+    struct Side {
+        double mean = 0.0, variance = 0.0;  // the latter of the mean
+    };
+    const auto sideOf = [&](std::span<const std::vector<double>> samples, int x, int y) {
+        const auto count = static_cast<double>(samples.size());
+        Side side;
+        for (const auto& sample : samples) side.mean += meanOf(sample, x, y) / count;
+        for (const auto& sample : samples) {
+            side.variance +=
+                std::pow(meanOf(sample, x, y) - side.mean, 2.0) / (count - 1.0) / count;
+        }
+        return side;
+    };
+    image::ImageF errors(width, height, 1);
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            const int left = x - x % kMeanTilePx, top = y - y % kMeanTilePx;
+            if (left < x || top < y) {
+                errors.at(x, y) = errors.at(left, top);
+                continue;
+            }
+            const Side sideA = sideOf(a, x, y), sideB = sideOf(b, x, y);
+            const double difference = sideA.mean - sideB.mean;
+            if (std::abs(difference) <= kRounding * std::abs(sideA.mean)) continue;
+            constexpr double kMost = std::numeric_limits<float>::max();
+            errors.at(x, y) = static_cast<float>(
+                std::clamp(difference / std::sqrt(sideA.variance + sideB.variance), -kMost, kMost));
+        }
+    }
+    return errors;
+}
+
 MeanTest testMeans(std::span<const std::vector<double>> a, std::span<const std::vector<double>> b) {
     const std::size_t count = std::min(a.size(), b.size());
     GFXREPRO_ASSERT(count >= 2);

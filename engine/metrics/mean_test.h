@@ -18,6 +18,17 @@ inline constexpr int kMeanTilePx = 8;
 /// smallest tiles come first.
 std::vector<double> tileMeans(const image::ImageF& picture);
 
+/// Where pictures differ from others of their expectation, and which way: the mean of the colours
+/// over each of the smallest tiles of `a` less that of `b`, in standard errors of the difference,
+/// at all pixels of the tile. Both as tileMeans() of pictures of that size; two or more on either
+/// side. Where nothing scatters a difference is as large as a float can be.
+image::ImageF tileDifferences(std::span<const std::vector<double>> a,
+                              std::span<const std::vector<double>> b, int width, int height,
+                              int channels);
+/// Ends the name of a picture of these differences, and the end of its scale.
+inline constexpr std::string_view kDifferencesSuffix = "_mean_difference";
+inline constexpr float kShownErrors = 5.0F;
+
 /// What testMeans() found.
 struct MeanTest {
     /// The chance that two such sets differ as much or more while their expectations are the same:

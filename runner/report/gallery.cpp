@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -15,6 +16,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/image/exr_io.h"
 #include "engine/image/image.h"
 #include "engine/image/png_io.h"
 #include "engine/image/resample.h"
@@ -36,6 +38,24 @@ std::string encodedAddress(const fs::path& path) {
         address += isPlain ? std::string(1, c) : fmt::format("%{:02X}", byte);
     }
     return address;
+}
+
+std::vector<image::Image8> lightLayers(const image::ImageF& picture) {
+    constexpr int kMost = 4;  // half floats end at 2^16
+    const image::ImageF colours = image::rgbOf(image::withStraightAlpha(picture));
+    std::vector<image::Image8> layers;
+    float white = 1.0F;
+    const auto isBrighter = [&](float value) { return value > white; };
+    while (layers.size() < kMost && std::ranges::any_of(colours.values(), isBrighter)) {
+        const float next = std::ldexp(white, kLayerStops);
+        image::ImageF layer(colours.width(), colours.height(), 3);
+        std::ranges::transform(colours.values(), layer.values().begin(), [&](float value) {
+            return isBrighter(value) ? value / next : 0.0F;
+        });
+        layers.push_back(image::toSrgb8(layer));
+        white = next;
+    }
+    return layers;
 }
 
 namespace {
@@ -114,7 +134,7 @@ class Gallery {
             if (!entry.truthOf.empty()) {
                 truths_.try_emplace({entry.caseId, entry.frame, entry.truthOf}, entry);
             }
-            frames_[entry.caseId].insert(entry.frame);
+            frames_[{entry.caseId, entry.name}].insert(entry.frame);
         }
     }
 
@@ -175,8 +195,33 @@ class Gallery {
             const image::PngRows rows(thumbnail, image::kMaxSidePx, image::ImageUse::Picture);
             std::tie(shot.width, shot.height) = std::pair{rows.width(), rows.height()};
         }
+        shot.isClipped = std::ranges::find(picture.values(), 255) != picture.values().end();
+        takeLight(entry, shot);
         if (const auto* truth = truthOf(entry)) compare(entry, picture, *truth, known, shot);
         return shot;
+    }
+
+    /// Its own, of what its PNG has lost.
+    void takeLight(const records::ImageEntry& entry, Shot& shot) const {
+        shot.light.clear();
+        std::error_code isAbsent;
+        const fs::path exr = runDir_ / entry.exr;
+        if (!shot.isClipped || entry.exr.empty() || !fs::is_regular_file(exr, isAbsent)) return;
+        image::ImageF light;
+        try {
+            light = image::readExr(exr).colour();
+        } catch (const Error&) {
+            return;  // it was damaged since, or holds no colours
+        }
+        if (std::pair{light.width(), light.height()} != sizeOf(entry)) return;
+        for (const image::Image8& layer : lightLayers(light)) {
+            const std::string suffix = fmt::format("-light-{}", shot.light.size() + 1);
+            const fs::path made = place_.madeDir / besides(entry.png, "thumbnails", suffix);
+            makeFolderOf(made);
+            image::writePng(
+                made, layer.width() > shot.width ? image::resizedTo(layer, shot.width) : layer);
+            shot.light.push_back(addressOf(made, place_));
+        }
     }
 
   private:
@@ -190,9 +235,9 @@ class Gallery {
                            place_.madeDir / made);
     }
 
-    /// A frame is named only where a case has several.
+    /// A frame is named only where there are several of the picture.
     std::string nameOf(const records::ImageEntry& entry) const {
-        if (frames_.at(entry.caseId).size() == 1) return entry.name;
+        if (frames_.at({entry.caseId, entry.name}).size() == 1) return entry.name;
         return fmt::format("{}, frame {}", entry.name, entry.frame);
     }
 
@@ -221,7 +266,7 @@ class Gallery {
     fs::path runDir_;
     std::vector<records::ImageEntry> entries_;
     std::map<ImageKey, records::ImageEntry> truths_;  // by the image that they are the truth of
-    std::map<std::string, std::set<int>> frames_;     // of each case
+    std::map<std::pair<std::string, std::string>, std::set<int>> frames_;  // of case and picture
 };
 
 bool isReadable(const fs::path& png) {
@@ -332,6 +377,7 @@ std::vector<Shot> gatherShots(const GalleryPlace& place, const PicturesDone& pro
             if (i == first) continue;
             shots[i] = shots[first];
             gallery.describe(entries[i], contents[i], shots[i]);
+            gallery.takeLight(entries[i], shots[i]);
         }
         if (!progress) return;
         const std::scoped_lock lock(mutex);

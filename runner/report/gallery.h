@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/image/image.h"
 #include "runner/records/images.h"
 
 namespace gfxrepro::report {
@@ -44,17 +45,26 @@ struct Shot {
     int frame = 0;
     std::string png;  // below the run's folder
     std::string thumbnail;
-    std::string full;          // empty: the thumbnail is the image itself
-    std::string truth;         // name of the shot that this one is compared with; empty: none
-    std::string content;       // of a truth: the same text for the same picture; empty: no truth
-    std::string flip;          // FLIP map against the truth, as `thumbnail`; empty: none
-    double flipMean = 0.0;     // what was recorded of it
-    std::uintmax_t bytes = 0;  // of the PNG
-    int width = 0;             // of what the viewer opens
+    std::string full;        // empty: the thumbnail is the image itself
+    std::string truth;       // name of the shot that this one is compared with; empty: none
+    std::string content;     // of a truth: the same text for the same picture; empty: no truth
+    std::string flip;        // FLIP map against the truth, as `thumbnail`; empty: none
+    double flipMean = 0.0;   // what was recorded of it
+    std::string errors;      // all that was, for people: "FLIP 0.0123 · RMSE 0.004"
+    bool isClipped = false;  // a channel of the PNG is as bright as it can be
+    std::vector<std::string> light;  // lightLayers() of its EXR, of the size that the viewer opens
+    std::uintmax_t bytes = 0;        // of the PNG
+    int width = 0;                   // of what the viewer opens
     int height = 0;
 
     bool isTruth() const { return !content.empty(); }
 };
+
+/// What a PNG cannot show of a picture: its light above white. Each layer is 2^kLayerStops darker
+/// than the one before, of which the PNG is the first, and black in a channel where that one tells;
+/// none where no value is above 1.
+inline constexpr int kLayerStops = 4;
+std::vector<image::Image8> lightLayers(const image::ImageF& picture);
 
 /// To how many pixels a side the pictures of runs inside of one file are reduced: the largest of
 /// these of which they are likely to stay below `mostBytes` with their error maps, else the least.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/text.h"
+#include "engine/metrics/mean_test.h"
 #include "runner/report/gallery.h"
 #include "runner/report/markup.h"
 #include "runner/report/pages.h"
@@ -216,6 +217,11 @@ void addTruths(const std::vector<Shot>& shots, PictureGrid& grid) {
     }
 }
 
+/// Of a claim that two have one mean: the noisy pictures themselves say less, and stand folded.
+bool isOfMeans(const Shot& shot) {
+    return shot.baseName.ends_with(metrics::kDifferencesSuffix);
+}
+
 /// The grid of the chosen ones among a run's shots of the table; truths of these come with them.
 PictureGrid pictureGrid(const tables::Table& table, const std::vector<Shot>& shots,
                         const std::set<std::size_t>& chosen) {
@@ -391,21 +397,38 @@ class Pictures {
         return tables::shownCase(shot.caseTitle, page_.id, words_);
     }
 
+    /// Of a truth what the titles of those share of which it is the truth.
+    std::string titleOf(std::size_t i) const {
+        std::optional<std::vector<std::string>> common;
+        for (const auto& [shot, truth] : truths_) {
+            if (truth != i) continue;
+            const std::vector<std::string> parts = split(caseOf(shots_[shot]), ',');
+            if (!common) common = parts;
+            std::erase_if(*common, [&](const std::string& part) {
+                return std::ranges::find(parts, part) == parts.end();
+            });
+        }
+        return common && !common->empty() ? std::string(trimmed(joined(*common, ",")))
+                                          : caseOf(shots_[i]);
+    }
+
     std::string idOf(std::size_t i) const { return fmt::format("{}-{}", prefix_, i); }
 
     /// A picture, what it shows, and below it how far it is from its truth.
     std::string figureHtml(std::size_t i, const std::string& says) const {
         const Shot& shot = shots_[i];
-        const std::string title = caseOf(shot);
+        const std::string title = titleOf(i);
         std::string data = fmt::format(
             " id=\"{}\" data-run=\"{}\" data-case=\"{}\" data-title=\"{}\" data-name=\"{}\"",
             escapeXml(idOf(i)), letter_, escapeXml(shot.caseId), escapeXml(title),
             escapeXml(nameOf(shot.name)));
         if (!shot.full.empty()) data += fmt::format(" data-full=\"{}\"", shot.full);
+        if (!shot.light.empty()) data += fmt::format(" data-light=\"{}\"", joined(shot.light, " "));
         const auto truth = truths_.find(i);
         if (truth != truths_.end()) {
             data += fmt::format(" data-truth=\"{}\"", escapeXml(idOf(truth->second)));
         }
+        if (!shot.errors.empty()) data += fmt::format(" data-errors=\"{}\"", shot.errors);
         std::string html = fmt::format(
             "<figure><button class=\"shot\"{}><img src=\"{}\" alt=\"{}\" width=\"{}\" "
             "height=\"{}\" loading=\"lazy\"></button><figcaption>{}</figcaption>\n",
@@ -434,6 +457,12 @@ class Pictures {
         const bool isOne = std::ranges::count_if(cell, isNamedAlike) == 1;
         const std::string name = nameOf(shots_[i].name);
         std::string says = column.empty() ? name : fmt::format("{}: {}", column, name);
+        if (isOfMeans(shots_[i])) {
+            says += fmt::format(
+                ": the mean of all less that of the truths, tile by tile in standard errors; red "
+                "is darker than the truth, blue brighter, full colour {:g} or more",
+                metrics::kShownErrors);
+        }
         if (!isOne) says += " · " + caseOf(shots_[i]);
         return says;
     }
@@ -510,18 +539,22 @@ bool isCalled(const Shot& shot, const std::string& name) {
 
 std::set<std::size_t> mainShots(const std::vector<Shot>& shots,
                                 const std::vector<std::string>& names) {
-    std::set<std::size_t> named, withTruth, first;
+    std::set<std::size_t> named, ofMeans, withTruth, first;
     std::map<std::string, std::string> firstName;
     for (std::size_t i = 0; i < shots.size(); ++i) {
         const Shot& shot = shots[i];
         const auto isMeant = [&](const std::string& name) { return isCalled(shot, name); };
         if (std::ranges::any_of(names, isMeant)) named.insert(i);
         if (shot.isTruth()) continue;
+        if (isOfMeans(shot)) ofMeans.insert(i);
         if (!shot.truth.empty()) withTruth.insert(i);
         const auto [name, isNew] = firstName.try_emplace(shot.caseId, shot.baseName);
         if (name->second == shot.baseName) first.insert(i);
     }
-    return !named.empty() ? named : !withTruth.empty() ? withTruth : first;
+    for (const auto* some : {&named, &ofMeans, &withTruth}) {
+        if (!some->empty()) return *some;
+    }
+    return first;
 }
 
 std::string imagesHtml(const Page& page, const Model& model) {

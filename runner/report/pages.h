@@ -92,8 +92,8 @@ Model buildModel(std::span<const ReportRun> runs, const std::filesystem::path& f
 bool isCalled(const Shot& shot, const std::string& name);
 
 /// The shots that a page shows first: those of the names (also "classes_0" of "classes"); where
-/// none is of them those that have a truth; where none has, those of the first name of each case.
-/// Truths are not among them.
+/// none is of them those that tell where noisy pictures differ in the mean; else those that have a
+/// truth; where none has, those of the first name of each case. Truths are not among them.
 std::set<std::size_t> mainShots(const std::vector<Shot>& shots,
                                 const std::vector<std::string>& names);
 
@@ -121,7 +121,7 @@ std::vector<Highlight> highlightsOf(const std::vector<const Page*>& pages,
 
 // Files beside this one, put into the program when it is built.
 extern const std::string_view kStyle;   // report.css: light, dark, narrow, print
-extern const std::string_view kScript;  // report.js: pages, filters, cases, viewer
+extern const std::string_view kScript;  // viewer.js, report.js: pages, filters, cases
 extern const std::string_view kViewer;  // viewer.html: where two images are compared
 
 /// From the beginning of a file to its body: its title, and the style.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -13,6 +14,7 @@
 
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/text.h"
 #include "runner/claims/claims.h"
 #include "runner/records/records.h"
 #include "runner/report/markup.h"
@@ -78,18 +80,37 @@ Page& pageOf(const std::string& id, Model& model) {
     return model.pages.emplace_back(std::move(page));
 }
 
-/// The error that a table shows of a picture is that below the picture, too; of the last process,
-/// whose picture is there.
+/// What the viewer says of a picture beside its truth.
+struct ErrorWords {
+    std::string_view metric, name, unit;
+};
+constexpr ErrorWords kErrorWords[] = {
+    {"flip", "FLIP", ""}, {"rmse", "RMSE", ""}, {"psnr_db", "PSNR", " dB"}};
+
+/// The error that a table shows of a picture is that below the picture, too, and in the viewer; of
+/// the last process, whose picture is there.
 void takeRecordedErrors(const std::vector<records::Record>& records, std::vector<Shot>& shots) {
-    std::map<std::tuple<std::string_view, std::string_view, int>, const records::Record*> flips;
+    using Place = std::tuple<std::string_view, std::string_view, int, std::string_view>;
+    std::map<Place, const records::Record*> errors;
     for (const records::Record& record : records) {
-        if (record.metric != "flip" || std::isnan(record.value)) continue;
-        const records::Record*& last = flips[{record.caseId, record.pass, record.frame}];
+        const bool isShown = std::ranges::find(kErrorWords, record.metric, &ErrorWords::metric) !=
+                             std::end(kErrorWords);
+        if (!isShown || std::isnan(record.value)) continue;
+        const records::Record*& last =
+            errors[{record.caseId, record.pass, record.frame, record.metric}];
         if (!last || last->process <= record.process) last = &record;
     }
     for (Shot& shot : shots) {
-        const auto found = flips.find({shot.caseId, shot.baseName, shot.frame});
-        if (found != flips.end()) shot.flipMean = found->second->value;
+        std::vector<std::string> said;
+        for (const auto& [metric, name, unit] : kErrorWords) {
+            const auto found = errors.find({shot.caseId, shot.baseName, shot.frame, metric});
+            const bool isFlip = metric == "flip";
+            if (found != errors.end() && isFlip) shot.flipMean = found->second->value;
+            if (found == errors.end() && !(isFlip && !shot.flip.empty())) continue;
+            const double value = isFlip ? shot.flipMean : found->second->value;
+            said.push_back(fmt::format("{} {:.4g}{}", name, value, unit));
+        }
+        shot.errors = joined(said, " · ");
     }
 }
 

@@ -310,6 +310,7 @@ class External : public technique::Technique {
             truths.push_back(metrics::tileMeans(truth.linear));
         }
         recordSameMean(samples, truths, picture.name, recorder);
+        recordDifferences(samples, truths, own.linear, picture.name, recorder);
     }
 
     fs::path placeOf(const std::string& file, config::Placeholders values,

@@ -8,7 +8,9 @@
 #include "engine/core/files.h"
 #include "engine/core/json_shape.h"
 #include "engine/core/text.h"
+#include "engine/image/colour_map.h"
 #include "engine/image/image_file.h"
+#include "engine/image/srgb.h"
 #include "engine/metrics/mean_test.h"
 
 namespace gfxrepro::external {
@@ -226,6 +228,22 @@ void recordSameMean(const Samples& pictures, const Samples& truths, const std::s
     }
     recorder.metric(metrics::kSameMeanP, test.p, name);
     if (std::isfinite(test.seen)) recorder.metric(metrics::kBiasSeen, test.seen, name);
+}
+
+void recordDifferences(const Samples& pictures, const Samples& truths, const image::ImageF& picture,
+                       const std::string& name, technique::Recorder& recorder) {
+    const image::ImageF errors = metrics::tileDifferences(pictures, truths, picture.width(),
+                                                          picture.height(), picture.channels());
+    // As in the viewer: red is too dark, blue too bright.
+    const image::Image8 colours = image::coloured(errors, image::ColourMap::CoolWarm,
+                                                  metrics::kShownErrors, -metrics::kShownErrors);
+    static const std::array<float, 256> kDecoded = image::srgbDecoding();
+    image::ImageF shown(colours.width(), colours.height(), colours.channels());
+    std::ranges::transform(colours.values(), shown.values().begin(),
+                           [](std::uint8_t value) { return kDecoded[value]; });
+    technique::ImageOptions options;
+    options.layers.add(errors, {"standard_errors"}, image::ExrPixelType::Float);
+    recorder.image(name + std::string(metrics::kDifferencesSuffix), shown, options);
 }
 
 }  // namespace gfxrepro::external

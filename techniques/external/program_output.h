@@ -55,5 +55,8 @@ void requireOneKind(const Picture& picture, const Picture& truth, const std::str
 /// (metrics::testMeans). Throws Error where several are the same picture: then nothing is random.
 void recordSameMean(const Samples& pictures, const Samples& truths, const std::string& name,
                     technique::Recorder& recorder);
+/// And where they differ, which way: a picture beside them, of whose tiles they are.
+void recordDifferences(const Samples& pictures, const Samples& truths, const image::ImageF& picture,
+                       const std::string& name, technique::Recorder& recorder);
 
 }  // namespace gfxrepro::external

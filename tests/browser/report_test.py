@@ -6,7 +6,9 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
+import struct
 import subprocess
 import sys
 import time
@@ -57,6 +59,28 @@ demo2026:
 QUICKER = "profiles: {quick: {params: {pause_ms: 1}}}\n"  # of the second table, which is thus not at what is printed
 
 
+NOISY_PROGRAM = """
+import random, struct, sys
+out, width, height, frame, bias = sys.argv[1], *map(int, sys.argv[2:5]), float(sys.argv[5])
+noise = random.Random(frame)
+values = [v for _ in range(height) for x in range(width) for v in [noise.random() + (bias if 2 * x >= width else 0)] * 3]
+open(out + "/result.pfm", "wb").write(b"PF\\n%d %d\\n-1.0\\n" % (width, height) + struct.pack(f"<{len(values)}f", *values))
+"""
+NOISY = """
+sweep_of: noisy
+title: Noisy pictures, of which one is brighter on the right
+program:
+  command: python3 {here}/noisy.py {out} {width} {height} {frame} {bias}
+  params: {bias: {default: 0.0, min: 0, max: 1, unit: "1"}}
+  images: {result: {file: result.pfm, truth: {bias: 0, frame: 1000, frames: 6}}}
+output: {width: 32, height: 32, frames: 6}
+sweep: {bias: [0, 0.1]}
+measure: {processes: 1}
+claims:
+  same: {says: all pictures have the mean of the truth, same_mean: same_mean_p, false_alarms: 1%}
+"""
+
+
 def run(*arguments, data):
     return subprocess.run([MOCK, *map(str, arguments)], env={**os.environ, "GFXREPRO_DATA": str(data)},
                           capture_output=True, text=True, check=False)
@@ -72,18 +96,39 @@ def make_run(data, folder, name="demo2026"):
 IMAGES = "case,table,frame,name,png,exr,title,truth_of,png_sha256,exr_sha256"
 
 
-def add_images(folder, images):
-    """Replaces the run's images by (case, name, truth_of, colour function) of 64² pixels."""
+def add_images(folder, images, light=None):
+    """Replaces the run's images by (case, name, truth_of, colour function) of 64² pixels. `light(x, y)` is the grey light of the
+    first one's EXR."""
     rows = [IMAGES]
     for i, (case, name, truth_of, colour) in enumerate(images):
-        file = f"images/made/{i}.png"
+        file, exr = f"images/made/{i}.png", ""
         png.write(folder / file, 64, 64, colour)
-        rows.append(f'{case},demo2026/1,0,{name},{file},,"demo2026/1 case {case}",{truth_of},{digest(folder / file)},')
+        if light and i == 0:
+            exr = f"images/made/{i}.exr"
+            values = [value for y in reversed(range(64)) for x in range(64) for value in [light(x, y)] * 3]
+            (folder / "light.pfm").write_bytes(b"PF\n64 64\n-1.0\n" + struct.pack(f"<{len(values)}f", *values))
+            assert run("image", "convert", folder / "light.pfm", "--out", folder / exr, data=OUT / "data").returncode == 0
+        rows.append(f'{case},demo2026/1,0,{name},{file},{exr},"demo2026/1 case {case}",{truth_of},{digest(folder / file)},')
     (folder / "images" / "index.csv").write_text("\n".join(rows) + "\n")
 
 
 def digest(file):
     return hashlib.sha256(file.read_bytes()).hexdigest()
+
+
+def srgb(value):
+    """What a display shows of grey light."""
+    value = min(1, 12.92 * value if value <= 0.0031308 else 1.055 * value ** (1 / 2.4) - 0.055)
+    return (round(255 * value),) * 3
+
+
+def linear(value):
+    """The other way, of 8 bits above 10."""
+    return ((value / 255 + 0.055) / 1.055) ** 2.4
+
+
+LOADED = ("const images = [...document.querySelectorAll('.stage img')];"
+          "return document.getElementById('viewer').open && images.length && images.every(i => i.complete)")
 
 
 def halves(left, right):
@@ -208,6 +253,21 @@ class Report(unittest.TestCase):
         self.browser.click(".pictures tbody:nth-of-type(2) .error")
         self.browser.wait("return document.getElementById('viewer').open")
         self.assertEqual(self.browser.script("return document.querySelector('#viewer [value=flip-map]').checked"), True)
+        # All methods of this truth in one place: ok, throw, the truth, and again.
+        self.browser.press("1")
+        self.browser.press("+")
+        seen = "return [document.querySelector('#viewer [name=a]').selectedOptions[0].text, document.querySelector('.layers').style.transform]"
+        places = [self.browser.script(seen)]
+        for _ in range(3):
+            self.browser.press("\ue015")  # down
+            places.append(self.browser.script(seen))
+        self.assertEqual(places[3], places[0])
+        self.assertEqual(len({place for _, place in places}), 1, "nothing moves")
+        names = [name for name, _ in places[:3]]
+        self.assertEqual(sorted(name.split(" · ")[0] for name in names), ["result", "result", "truth"])
+        self.assertEqual(len(set(names)), 3, names)
+        self.browser.press("\ue013")  # up
+        self.assertEqual(self.browser.script(seen), places[2])
 
     def test_one_file_to_send(self):
         folder = OUT / "sent"
@@ -358,8 +418,7 @@ class Report(unittest.TestCase):
     def view(self, case):
         self.open("#demo2026-1")
         self.browser.click(f".shot[data-case={case}][data-name=result]")
-        self.browser.wait("return document.getElementById('viewer').open && "
-                          "[...document.querySelectorAll('.stage img')].every(i => i.complete)")
+        self.browser.wait(LOADED)
 
     def pixels(self, name):
         """The colours left and right of the middle of the first pane's image."""
@@ -436,6 +495,104 @@ class Report(unittest.TestCase):
         self.assertEqual(self.browser.script("return document.querySelector('.handle').ariaValueNow"), "0")
         self.near(self.pixels("viewer-slider-by-keys")[0], LIGHT)
         self.assertGreater(self.shown(".keys kbd"), 5)
+
+    def set_slider(self, name, value):
+        self.browser.script("const s = document.querySelector(`#viewer [name=${arguments[0]}]`); s.value = arguments[1];"
+                            "s.dispatchEvent(new Event('input', {bubbles: true}))", name, value)
+
+    def lit(self, *arguments):
+        """A report of two pictures; of the first the left is light of 0.25, and the right of 300, which a PNG shows as white."""
+        folder = OUT / "lit"
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.folder, folder)
+        add_images(folder, [("c1", "result", "", halves(srgb(0.25), (255,) * 3)), ("c1", "truth", "result", halves(srgb(0.25), GREY))],
+                   lambda x, y: 0.25 if x < 32 else 300)
+        run("report", folder, *arguments, data=self.data)
+        self.browser.resize(700, 500)  # its screenshots are read in Python
+        self.open("#demo2026-1", folder)
+        self.browser.click(".shot[data-case=c1][data-name=result]")
+        self.browser.wait(LOADED)
+        return folder
+
+    def test_exposure_brings_back_the_light_above_white(self):
+        for arguments in ((), ("--embed",)):
+            self.lit(*arguments)
+            self.browser.press("2")
+            self.near(self.pixels("viewer-lit")[1], (255, 255, 255), 0)
+            for stops in (-1, -4, -9, -10):
+                self.set_slider("exposure", stops)
+                left, right = self.pixels(f"viewer-exposed{stops}")
+                self.near(left, srgb(0.25 * 2 ** stops), 2)
+                self.near(right, srgb(300 * 2 ** stops), 3)
+            self.set_slider("gamma", 2)
+            self.near(self.pixels("viewer-gamma")[1], srgb((300 * 2 ** -10) ** 0.5), 3)
+            self.browser.point(".pane")
+            self.browser.drag(".pane", 60, 0)
+            self.assertRegex(self.browser.script("return document.querySelector('[name=pixel]').value"), r"A 255 255 255 \(light 30\d 30\d 30\d\)")
+            self.browser.press("r")
+            self.near(self.pixels("viewer-as-before")[1], (255, 255, 255), 0)
+            self.set_slider("exposure", 1)
+            self.near(self.pixels("viewer-brighter")[0], srgb(0.5), 2)
+
+    def test_a_bias_is_shown_tile_by_tile_and_its_seeds_are_folded(self):
+        noisy = OUT / "noisy"
+        shutil.rmtree(noisy, ignore_errors=True)
+        noisy.mkdir()
+        (noisy / "noisy.py").write_text(NOISY_PROGRAM)
+        (noisy / "noisy.yaml").write_text(NOISY)
+        self.assertEqual(run("reproduce", noisy / "noisy.yaml", "--quiet", "--out", noisy / "run", data=self.data).returncode, 1)
+        self.open("", noisy / "run")
+        self.browser.screenshot(OUT / "same-mean.png")
+        names = "return [...document.querySelectorAll('.shot')].filter(s => s.checkVisibility()).map(s => s.dataset.name)"
+        self.assertEqual(self.browser.script(names), ["result mean difference"] * 2, "a map a case")
+        self.assertEqual(len(self.browser.script("return [...document.querySelectorAll('details.further .shot')]")), 2 * 6 + 6,
+                         "and the truth beside each frame")
+        self.browser.click(".shot[data-title='bias 0.1']")
+        self.browser.wait(LOADED)
+        self.browser.press("2")
+        left, right = self.pixels("viewer-same-mean")
+        self.assertLess(max(left) - min(left), 90, f"nearly grey: {left}")
+        self.assertGreater(right[2] - right[0], 90, f"blue, for it is brighter: {right}")
+
+    def test_differences_are_of_what_is_exposed(self):
+        self.lit()
+        self.browser.press("5")
+        self.set_slider("exposure", -10)
+        left, right = self.pixels("viewer-exposed-difference")
+        self.near(left, (0, 0, 0), 0)
+        self.near(right, [a - b for a, b in zip(srgb(300 / 1024), srgb(linear(120) / 1024))], 3)
+
+    def test_what_is_seen_stands_in_the_address(self):
+        self.view("c1")
+        state = ("return ['a', 'b', 'mode', 'exposure', 'gamma', 'gain'].map(n => document.querySelector('#viewer .bar').elements[n].value)"
+                 ".concat(document.querySelector('.layers').style.transform)")
+        self.browser.press("4")
+        for name, value in (("exposure", -2.5), ("gamma", 1.3), ("gain", 3)):
+            self.set_slider(name, value)
+        self.browser.press("+")
+        self.browser.press("\ue014", held="\ue008")
+        before = self.browser.script(state)
+        self.browser.wait("return location.hash.includes('at=')")
+        address = self.browser.script("return location.hash")
+        self.open(address)
+        self.browser.wait(LOADED)
+        self.assertEqual(self.browser.script("return document.querySelector('.page.current').id"), "demo2026-1")
+        after = self.browser.script(state)
+        self.assertEqual(after[:-1], before[:-1])
+        numbers = lambda text: [float(number) for number in re.findall(r"-?[\d.]+", text)]
+        self.near(numbers(after[-1]), numbers(before[-1]), 2)
+        self.browser.press("\ue00c")  # Escape
+        self.browser.wait("return location.hash === '#demo2026-1'")
+
+    def test_a_picture_fills_its_pane_and_says_its_error(self):
+        self.view("c1")
+        widths = self.browser.script("return ['.pane', '.layers'].map(s => { const b = document.querySelector(s).getBoundingClientRect();"
+                                     "return [b.width, b.height]; })")
+        self.assertAlmostEqual(max(i / p for i, p in zip(widths[1], widths[0])), 1, delta=0.01)
+        said = self.browser.script("return document.querySelector('#viewer [name=error]').value")
+        shown = self.browser.script("return document.querySelector('.of-error figcaption').textContent")
+        self.assertRegex(said, r"^FLIP 0\.\d+")
+        self.assertAlmostEqual(float(said.split()[1]), float(re.search(r"FLIP ([\d.]+)", shown)[1]), delta=1e-4)
 
     def test_error_maps_show_sign_and_gain(self):
         grey = (222, 222, 222)
@@ -562,7 +719,7 @@ class Report(unittest.TestCase):
         sources = self.browser.script("return [...document.querySelectorAll('.gallery img')].map(i => i.getAttribute('src'))")
         self.assertTrue(all((folder / s).is_file() for s in sources))
         self.browser.click(".shot[data-case=c250]")
-        self.browser.wait("const i = document.querySelector('.stage .a');"
+        self.browser.wait("const i = document.querySelector('.stage .a img');"
                           "return i.complete && i.naturalWidth === 288 && document.getElementById('viewer').open")
 
     def test_runs_side_by_side(self):

@@ -233,5 +233,28 @@ TEST(MeanTest, TakesTilesOfEverySize) {
     EXPECT_THAT(tileMeans(colours), ElementsAre(0.5, 0.5, 0.5));
 }
 
+TEST(TileDifferences, AreSignedStandardErrorsOfTheColours) {
+    // Of two tiles the left is alike; on the right b lies 3 lower, in means of variance 1 a side.
+    const auto sampleOf = [](float left, float right) {
+        ImageF picture(12, 8, 4, left);
+        for (int y = 0; y < 8; ++y) {
+            for (int x = 8; x < 12; ++x) {
+                for (int c = 0; c < 4; ++c) picture.at(x, y, c) = c < 3 ? right : 9.0F * left;
+            }
+        }
+        return tileMeans(picture);
+    };
+    const std::vector<std::vector<double>> a = {sampleOf(1, 6), sampleOf(3, 8)};
+    const std::vector<std::vector<double>> b = {sampleOf(3, 3), sampleOf(1, 5)};
+    const ImageF errors = tileDifferences(a, b, 12, 8, 4);
+    EXPECT_EQ(errors.at(0, 0), 0.0F);
+    EXPECT_EQ(errors.at(7, 7), 0.0F);
+    EXPECT_NEAR(errors.at(8, 0), 3.0 / std::sqrt(2.0), 1e-5);
+    EXPECT_EQ(errors.at(11, 7), errors.at(8, 0));
+    EXPECT_EQ(tileDifferences(b, a, 12, 8, 4).at(8, 0), -errors.at(8, 0));
+    const std::vector<std::vector<double>> still(2, sampleOf(1, 1)), other(2, sampleOf(1, 2));
+    EXPECT_EQ(tileDifferences(other, still, 12, 8, 4).at(9, 0), std::numeric_limits<float>::max());
+}
+
 }  // namespace
 }  // namespace gfxrepro::metrics

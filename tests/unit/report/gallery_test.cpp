@@ -1,10 +1,13 @@
 // Pictures on their way into a page.
 #include "runner/report/gallery.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "engine/image/exr_io.h"
 #include "engine/image/png_io.h"
+#include "engine/image/srgb.h"
 #include "runner/report/pages.h"
 #include "tests/support/grid.h"
 #include "tests/support/support.h"
@@ -76,6 +79,44 @@ TEST(Gallery, PicturesThatAreAlikeAreShownByOnesFiles) {
     EXPECT_TRUE(shots[1].isTruth() && shots[3].isTruth());
     EXPECT_EQ(shots[1].content, shots[3].content);
     EXPECT_FALSE(a.isTruth() || b.isTruth());
+}
+
+TEST(Gallery, LightAboveWhiteLiesInLayers) {
+    image::ImageF picture(6, 1, 1, 0.5F);
+    const float values[] = {0.5F, 1.0F, 2.0F, 20.0F, 1000.0F, 0.0F};
+    std::ranges::copy(values, picture.values().begin());
+    const std::vector<image::Image8> layers = lightLayers(picture);
+    ASSERT_EQ(layers.size(), 3U) << "16, 256, 4096";
+    const image::Image8 first = image::toSrgb8(picture);
+    for (int x = 0; x < 6; ++x) {
+        float light = image::linearOf(static_cast<float>(first.at(x, 0)) / 255.0F);
+        for (std::size_t i = 0; i < layers.size(); ++i) {
+            const float shown = image::linearOf(static_cast<float>(layers[i].at(x, 0)) / 255.0F);
+            light = std::max(light, std::ldexp(shown, kLayerStops * (static_cast<int>(i) + 1)));
+        }
+        EXPECT_NEAR(light, values[x], 0.015F * values[x]);
+        EXPECT_EQ(layers[0].at(x, 0) > 0, values[x] > 1.0F) << "black where the PNG tells";
+        EXPECT_EQ(layers[1].at(x, 0) > 0, values[x] > 16.0F);
+    }
+    EXPECT_TRUE(lightLayers(image::ImageF(2, 2, 3, 1.0F)).empty());
+}
+
+TEST(Gallery, PicturesOfOnePngKeepTheirOwnLight) {
+    const test::TemporaryFolder run;
+    records::ImageWriter writer(run.path());
+    std::filesystem::create_directories(run.path() / "images");
+    for (const float value : {0.5F, 2.0F, 40.0F}) {
+        const std::string stem = fmt::format("images/{}", value);
+        image::writePng(run.path() / (stem + ".png"), image::Image8(8, 8, 3, 255));
+        image::ExrImage exr;
+        exr.add(image::ImageF(8, 8, 3, value), {"R", "G", "B"});
+        image::writeExr(run.path() / (stem + ".exr"), exr);
+        writer.append({{stem, "t/1", 0, "result", stem + ".png", stem + ".exr", "t"}});
+    }
+    const auto shots = gatherShots({run.path(), run.path(), run.path() / "report.html"});
+    ASSERT_EQ(shots.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(shots[i].light.size(), i);
+    for (const std::string& layer : shots[2].light) EXPECT_TRUE(exists(run.path() / layer));
 }
 
 TEST(Gallery, SaysHowFarItIs) {
