@@ -95,6 +95,19 @@ std::vector<ClaimResult> readClaims(const std::filesystem::path& file) {
     return claims;
 }
 
+std::vector<KeptCell> readKeptCells(const std::filesystem::path& file) {
+    constexpr std::array<std::string_view, 11> kColumns = {
+        "table", "row",  "source", "column", "printed", "measured",
+        "low",   "high", "bounds", "status", "marks"};
+    std::vector<KeptCell> cells;
+    readRows(file, kColumns, [&](Row& row, const SourceLocation&) {
+        cells.push_back({row["table"], row["row"], row["column"], row["printed"],
+                         parseDouble(row["measured"]), parseDouble(row["low"]),
+                         parseDouble(row["high"]), row["bounds"] == "95 % interval"});
+    });
+    return cells;
+}
+
 std::vector<KeptRun> readKeptRuns(const std::filesystem::path& file) {
     std::vector<KeptRun> runs;
     readRows(file, kRunsColumns, [&](Row& row, const SourceLocation& where) {

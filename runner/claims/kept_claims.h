@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,16 @@ struct KeptRun {
     std::vector<std::string> scans;  // scenes that were files
     std::string command;
 };
+
+/// A cell of a table that results/reference keeps; `row` as "scene=a; step=1".
+struct KeptCell {
+    std::string table, row, column, printed;
+    std::optional<double> measured, low, high;
+    bool isInterval = false;  // what low and high are; else a range
+};
+
+/// cells.csv as scripts/keep writes it. Throws Error with file and line.
+std::vector<KeptCell> readKeptCells(const std::filesystem::path& file);
 
 /// runs.csv as scripts/keep writes it. Throws Error with file and line.
 std::vector<KeptRun> readKeptRuns(const std::filesystem::path& file);

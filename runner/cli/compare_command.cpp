@@ -15,11 +15,13 @@
 #include "runner/cli/commands.h"
 #include "runner/cli/console.h"
 #include "runner/cli/experiments.h"
+#include "runner/cli/reading_commands.h"
 #include "runner/config/external_program.h"
 #include "runner/outcome/results.h"
 #include "runner/regression/comparison.h"
 #include "runner/regression/nightly_history.h"
 #include "runner/regression/picture_comparison.h"
+#include "runner/report/report.h"
 #include "runner/run/child_process.h"
 #include "runner/run/manifest.h"
 #include "runner/run/run.h"
@@ -344,6 +346,43 @@ std::vector<Difference> compareRuns(const Measured& older, const Measured& newer
     return differences;
 }
 
+/// The kept results of results/reference, or a whole run, for a page; a run's exit code beside it.
+report::ReportRun shownRun(const std::string& dir) {
+    if (!fs::exists(fs::path(dir) / "plan.json")) return outcome::keptRun(dir);
+    const run::StoredRun run = run::readRun(dir);
+    return outcome::reportRun(dir, run, outcome::resultsOf(run));
+}
+
+/// Both runs side by side, what differs first.
+void writePage(const CompareOptions& options, const regression::Comparison& comparison,
+               const fs::path& folder) {
+    std::vector<report::ReportRun> runs = {shownRun(options.inputs[0]),
+                                           shownRun(options.inputs[1])};
+    noteOtherMachines(runs);
+    report::ReportOptions shown = outcome::reportOptions();
+    const std::vector<std::string> titles =
+        regression::titlesOf(regression::keysOf(comparison.differences));
+    for (std::size_t i = 0; i < titles.size(); ++i) {
+        const Difference& difference = comparison.differences[i];
+        std::string says = difference.reason;
+        if (says.empty() && difference.key.isTime()) {
+            says = fmt::format("{:.3f} [{:.3f}, {:.3f}]", difference.ratio, difference.interval.low,
+                               difference.interval.high);
+        } else if (says.empty() && !difference.isPicture()) {
+            says = fmt::format("{:.6g} → {:.6g}", difference.before, difference.after);
+        }
+        shown.compared.push_back({titles[i],
+                                  std::string(regression::verdictName(difference.verdict)), says,
+                                  difference.isAlarm()});
+    }
+    if (!titles.empty()) {
+        shown.comparedInAll =
+            "Of all that they recorded: " + regression::summaryLine(comparison.differences) + ".";
+    }
+    report::writeReport(folder / "report.html", runs, shown);
+    say("report: {}\n", (folder / "report.html").string());
+}
+
 void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
     for (const std::string& note : comparison.notes) say("warning: {}\n", note);
     const std::vector<std::string> titles =
@@ -367,6 +406,10 @@ void sayAll(const regression::Comparison& comparison, const fs::path& folder) {
     }
     say("{}; {}\n", regression::summaryLine(comparison.differences),
         (folder / "comparison.md").string());
+}
+
+bool isKept(const std::string& dir) {
+    return !fs::exists(fs::path(dir) / "plan.json") && fs::exists(fs::path(dir) / "cells.csv");
 }
 
 /// A case that neither side measured weighs more than what the others say. One that the newer side
@@ -401,6 +444,16 @@ int compare(const CompareOptions& options) {
         newer = turns.newer();
         newer.failures = turns.failures();
         if (options.arePrograms) newer.commit = buildName(newer, options.inputs[1]);
+    } else if (std::ranges::any_of(options.inputs, isKept)) {
+        // Kept results have no records: their verdicts and cells stand beside the other's.
+        std::string lines;
+        for (const std::string& dir : options.inputs) {
+            lines += outcome::madeFromLine(dir, shownRun(dir).manifest);
+        }
+        outcome::requireMadeFrom(folder, lines);
+        outcome::noteMadeFrom(folder, lines);
+        writePage(options, comparison, folder);
+        return kExitOk;
     } else {
         const Measured older = readMeasured(options.inputs[0]);
         newer = readMeasured(options.inputs[1]);
@@ -427,6 +480,7 @@ int compare(const CompareOptions& options) {
     if (!times.empty()) writeFileAtomic(folder / "benchmark.json", times);
     if (times.empty()) fs::remove(folder / "benchmark.json");  // of a comparison before
     sayAll(comparison, folder);
+    if (!isByTurns) writePage(options, comparison, folder);
     return exitCodeOf(comparison, newer.failures);
 }
 

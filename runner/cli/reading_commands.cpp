@@ -216,18 +216,6 @@ void sayPrintedCells(const tables::PrintedCells& count) {
     if (!line.empty()) say("{}\n", line);
 }
 
-/// What differs between runs of several machines may differ by them: a note of the first run.
-void noteOtherMachines(std::vector<report::ReportRun>& runs) {
-    std::vector<std::string> machines;
-    for (const report::ReportRun& run : runs) {
-        const std::string machine = run::machineName(run.manifest);
-        if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
-    }
-    if (machines.size() < 2) return;
-    runs.front().manifest["notes"].push_back("the runs are of several machines: " +
-                                             joined(machines, "; "));
-}
-
 /// A report does not go over that of a run that it does not show.
 void requireNoOtherRun(const fs::path& folder, const std::vector<report::ReportRun>& runs) {
     const bool isShown = std::ranges::any_of(runs, [&](const report::ReportRun& run) {
@@ -265,6 +253,17 @@ void sayPictures(std::size_t done, std::size_t all) {
 }
 
 }  // namespace
+
+void noteOtherMachines(std::vector<report::ReportRun>& runs) {
+    std::vector<std::string> machines;
+    for (const report::ReportRun& run : runs) {
+        const std::string machine = run::machineName(run.manifest);
+        if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
+    }
+    if (machines.size() < 2) return;
+    runs.front().manifest["notes"].push_back("the runs are of several machines: " +
+                                             joined(machines, "; "));
+}
 
 void requireReport(const fs::path& file) {
     std::error_code isAbsent;
@@ -367,9 +366,9 @@ int report(const std::vector<std::string>& runDirs, const std::string& out, bool
         if (!embeds) outcome::requireMadeFrom(made, from);
         requireReport(file);
     }
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-        const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[i].folder, i, file);
-        runs[i].curves = report::drawCurves(drawn, runs[i].tables, runs[i].experiments);
+    if (runs.size() == 1) {
+        const fs::path drawn = embeds ? fs::path() : report::madeFolder(runs[0].folder, 0, file);
+        runs[0].curves = report::drawCurves(drawn, runs[0].tables, runs[0].experiments);
     }
     report::writeReport(file, runs, outcome::reportOptions(embeds, sayPictures));
     if (!embeds && fs::exists(made)) outcome::noteMadeFrom(made, from);

@@ -187,6 +187,62 @@ report::ReportRun reportRun(const fs::path& runDir, const run::StoredRun& run,
     return result;
 }
 
+namespace {
+
+/// "a=1; b=x" as its axes and their values.
+void takeRow(const std::string& row, std::vector<std::string>& axes,
+             std::vector<std::string>& labels) {
+    for (const std::string& part : split(row, ';')) {
+        const std::string text(trimmed(part));
+        const std::size_t at = std::min(text.find('='), text.size());
+        axes.push_back(text.substr(0, at));
+        labels.push_back(at < text.size() ? text.substr(at + 1) : "");
+    }
+}
+
+/// Tables of numbers alone, in the order of the file.
+std::vector<tables::Table> keptTables(const fs::path& file) {
+    std::vector<tables::Table> kept;
+    for (const claims::KeptCell& cell : claims::readKeptCells(file)) {
+        if (kept.empty() || kept.back().id != cell.table) {
+            kept.emplace_back().id = cell.table;
+        }
+        tables::Table& table = kept.back();
+        tables::TableRow row;
+        table.rowAxes.clear();
+        takeRow(cell.row, table.rowAxes, row.labels);
+        auto place = std::ranges::find(table.rows, row.labels, &tables::TableRow::labels);
+        if (place == table.rows.end()) place = table.rows.insert(place, std::move(row));
+        std::size_t column = table.findColumn(cell.column).value_or(table.columns.size());
+        if (column == table.columns.size()) table.columns.push_back({cell.column, ""});
+        if (place->cells.size() <= column) place->cells.resize(column + 1);
+        tables::Cell& shown = place->cells[column];
+        if (!cell.printed.empty()) shown.printed = cell.printed;
+        if (!cell.measured) continue;
+        const auto text = [](double value) { return fmt::format("{:.4g}", value); };
+        tables::Measured value;
+        value.value = *cell.measured;
+        shown.status = records::Status::Ok;
+        shown.measured = text(*cell.measured);
+        if (cell.low && cell.high) {
+            value.bounds = cell.isInterval ? tables::Bounds::Interval : tables::Bounds::Range;
+            value.interval = {*cell.low, *cell.high};
+            shown.low = text(*cell.low);
+            shown.high = text(*cell.high);
+        }
+        shown.values = {value};
+    }
+    for (tables::Table& table : kept) {
+        for (tables::TableRow& row : table.rows) {
+            row.cells.resize(table.columns.size());
+            for (tables::Cell& cell : row.cells) cell.isPlanned = cell.isOk();
+        }
+    }
+    return kept;
+}
+
+}  // namespace
+
 report::ReportRun keptRun(const fs::path& folder) {
     const fs::path runs = folder / "runs.csv", claims = folder / "claims.csv";
     if (!fs::exists(runs) || !fs::exists(claims)) {
@@ -197,6 +253,7 @@ report::ReportRun keptRun(const fs::path& folder) {
     report::ReportRun result;
     result.folder = folder;
     result.claims = claims::readClaims(claims);
+    if (fs::exists(folder / "cells.csv")) result.keptTables = keptTables(folder / "cells.csv");
     std::set<std::string> commits;
     for (const claims::KeptRun& run : claims::readKeptRuns(runs)) {
         commits.insert(run.commit);

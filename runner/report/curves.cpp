@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -13,6 +14,7 @@
 #include "engine/core/text.h"
 #include "runner/config/experiment.h"
 #include "runner/report/markup.h"
+#include "runner/report/pages.h"
 #include "runner/report/svg.h"
 #include "runner/tables/figure.h"
 #include "runner/tables/table.h"
@@ -50,10 +52,19 @@ constexpr double kSample = 30.0;
 constexpr double kMeasured = 3.2, kPrinted = 4.5, kSmallPoint = 2.4;  // sizes of markers
 constexpr std::string_view kReference = "stroke-dasharray=\"6 4\" stroke-width=\"1.2\"";
 constexpr std::string_view kFaint = "stroke-opacity=\".4\"";
+constexpr std::string_view kLater = "stroke-width=\"1.8\" stroke-dasharray=\"2 3\"";  // B, C, …
 constexpr std::string_view kHollow = "fill=\"none\" stroke-width=\"1.4\"";
 
 const CurveStyle& styleOf(std::size_t curve) {
     return kCurveStyles[curve % kCurveStyles.size()];
+}
+
+/// A curve of a name has one colour in every run; those of the first have whole lines.
+std::size_t nameCount(const tables::Figure& figure) {
+    return std::max<std::size_t>(figure.curveNames.size() / figure.runCount, 1);
+}
+std::string_view lineOf(const tables::Figure& figure, std::size_t curve) {
+    return curve < nameCount(figure) ? "stroke-width=\"1.8\"" : kLater;
 }
 
 std::string group(std::string_view colour, const std::string& content) {
@@ -162,9 +173,9 @@ class FigureDrawing {
         std::vector<Entry> entries;
         const bool areSeveral = figure_.curveNames.size() > 1;
         for (std::size_t i = 0; areSeveral && i < figure_.curveNames.size(); ++i) {
-            const CurveStyle& style = styleOf(i);
+            const CurveStyle& style = styleOf(i % nameCount(figure_));
             entries.push_back(
-                {group(style.colour, svgLine(-11.0, 0.0, 11.0, 0.0, "stroke-width=\"1.8\"") +
+                {group(style.colour, svgLine(-11.0, 0.0, 11.0, 0.0, lineOf(figure_, i)) +
                                          marker(style, 0.0, 0.0, kMeasured)),
                  figure_.curveNames[i], i});
         }
@@ -319,7 +330,7 @@ class FigureDrawing {
     std::string curveSvg(const tables::FigurePanel& panel, std::size_t which,
                          const Plane& plane) const {
         const tables::FigureCurve& curve = panel.curves[which];
-        const CurveStyle& style = styleOf(which);
+        const CurveStyle& style = styleOf(which % nameCount(figure_));
         const auto path = [&](const std::vector<tables::FigurePoint>& points,
                               std::string_view attributes) {
             std::vector<std::pair<double, std::optional<double>>> places;
@@ -350,7 +361,7 @@ class FigureDrawing {
         for (const auto& point : curve.points)
             addPoint(point, isOverNames() ? kSmallPoint : kMeasured, "stroke=\"none\"", "");
         for (const auto& point : curve.printed) addPoint(point, kPrinted, kHollow, "printed");
-        const std::string_view line = isOverNames() ? kFaint : "stroke-width=\"1.8\"";
+        const std::string_view line = isOverNames() ? kFaint : lineOf(figure_, which);
         const std::string drawn = group(style.colour, path(curve.points, line) + bars + markers);
         return isOverNames() ? drawn + reference : reference + drawn;
     }
@@ -371,18 +382,37 @@ std::string figureSvg(const tables::Figure& figure, const std::string& title, do
 
 namespace {
 
+std::vector<config::PlotSpec> plotsOf(const config::Experiment& experiment,
+                                      const tables::Table& table) {
+    return experiment.hasDefaultLayout() ? tables::defaultPlots(table) : experiment.plots;
+}
+
+/// As one run has it, and what it lacks.
+struct Drawn {
+    Curve curve;
+    tables::Figure figure = {};  // without panels where it has a problem
+};
+
+Drawn drawn(const tables::Table& table, const config::PlotSpec& plot) {
+    Drawn one{{table.id, plot.title.empty() ? table.title : plot.title, "", ""}};
+    const std::string absent = tables::whatIsAbsent(plot, table);
+    if (absent.empty()) one.figure = tables::makeFigure(plot, table);
+    if (one.figure.panels.empty()) {
+        one.curve.problem =
+            absent.empty() ? "no value was measured" : "not among what was measured: " + absent;
+    } else if (plot.slope) {
+        tables::addReference(one.figure, *plot.slope);
+    }
+    return one;
+}
+
 /// `file` is where it goes as one; empty: nowhere.
 Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot, const fs::path& file) {
-    Curve curve{table.id, plot.title.empty() ? table.title : plot.title, "", ""};
-    const std::string absent = tables::whatIsAbsent(plot, table);
-    tables::Figure figure = absent.empty() ? tables::makeFigure(plot, table) : tables::Figure();
+    auto [curve, figure] = drawn(table, plot);
     if (figure.panels.empty()) {
-        curve.problem =
-            absent.empty() ? "no value was measured" : "not among what was measured: " + absent;
         if (!file.empty()) fs::remove(file);  // of a run before this one
         return curve;
     }
-    if (plot.slope) tables::addReference(figure, *plot.slope);
     curve.svg = figureSvg(figure, curve.title, kWidePx);
     if (!file.empty()) writeFileAtomic(file, curve.svg);
     curve.svg += figureSvg(figure, curve.title, kNarrowPx);
@@ -391,14 +421,50 @@ Curve drawCurve(const tables::Table& table, const config::PlotSpec& plot, const 
 
 }  // namespace
 
+std::vector<Curve> overlaidCurves(const std::vector<std::vector<tables::Table>>& tables,
+                                  const std::vector<std::vector<config::Experiment>>& experiments) {
+    struct Laid {
+        Curve curve;
+        std::vector<tables::Figure> figures;
+        std::vector<std::string> letters;
+    };
+    std::map<std::pair<std::string, std::size_t>, Laid> all;  // by table, and which of its plots
+    std::vector<std::pair<std::string, std::size_t>> order;
+    for (std::size_t run = 0; run < tables.size(); ++run) {
+        for (std::size_t i = 0; i < tables[run].size(); ++i) {
+            const auto plots = plotsOf(experiments[run][i], tables[run][i]);
+            for (std::size_t n = 0; n < plots.size(); ++n) {
+                Drawn one = drawn(tables[run][i], plots[n]);
+                const std::pair key{tables[run][i].id, n};
+                const auto [place, isNew] = all.try_emplace(key, Laid{one.curve, {}, {}});
+                if (isNew) order.push_back(key);
+                if (one.figure.panels.empty()) continue;
+                place->second.curve.problem.clear();
+                place->second.figures.push_back(std::move(one.figure));
+                place->second.letters.push_back(Model::letter(run));
+            }
+        }
+    }
+    std::vector<Curve> curves;
+    for (const auto& key : order) {
+        Laid& laid = all.at(key);
+        Curve& curve = curves.emplace_back(std::move(laid.curve));
+        if (laid.figures.empty()) continue;
+        const tables::Figure figure = tables::overlaid(laid.figures, laid.letters);
+        if (laid.figures.size() == 1) curve.title = laid.letters[0] + ": " + curve.title;
+        for (const double width : {kWidePx, kNarrowPx}) {
+            curve.svg += figureSvg(figure, curve.title, width);
+        }
+    }
+    return curves;
+}
+
 std::vector<Curve> drawCurves(const fs::path& folder, const std::vector<tables::Table>& tables,
                               const std::vector<config::Experiment>& experiments) {
     GFXREPRO_ASSERT_EQ(experiments.size(), tables.size());
     std::vector<Curve> curves;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-        const std::vector<config::PlotSpec> plots = experiments[i].hasDefaultLayout()
-                                                        ? tables::defaultPlots(tables[i])
-                                                        : experiments[i].plots;
+        const std::vector<config::PlotSpec> plots = plotsOf(experiments[i], tables[i]);
         for (std::size_t n = 0; n < plots.size(); ++n) {
             const std::string suffix = n == 0 ? "" : fmt::format("-{}", n + 1);
             const fs::path file = "plots/" + tables[i].slug + suffix + ".svg";

@@ -27,6 +27,11 @@ std::vector<Curve> drawCurves(const std::filesystem::path& folder,
                               const std::vector<tables::Table>& tables,
                               const std::vector<config::Experiment>& experiments);
 
+/// The same of several runs, lettered A, B, …: a plot that several have is one figure of all. Each
+/// is given of the first run that has its table; nothing is written.
+std::vector<Curve> overlaidCurves(const std::vector<std::vector<tables::Table>>& tables,
+                                  const std::vector<std::vector<config::Experiment>>& experiments);
+
 /// The legend above, then the panels, then the notes. Points are titled with their numbers. What an
 /// axis does not show is left out; the ends of an interval stay within the axis.
 std::string figureSvg(const tables::Figure& figure, const std::string& title, double width);

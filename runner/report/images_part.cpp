@@ -1,4 +1,4 @@
-// The pictures of a page, which lie beside each other as the rows and columns of its table do.
+// The pictures of a page as HTML.
 #include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
@@ -13,6 +13,7 @@
 #include "runner/report/gallery.h"
 #include "runner/report/markup.h"
 #include "runner/report/pages.h"
+#include "runner/report/picture_grid.h"
 #include "runner/tables/labels.h"
 #include "runner/tables/table.h"
 
@@ -20,277 +21,32 @@ namespace gfxrepro::report {
 
 namespace {
 
-/// Pictures of one name: a line of the grid. Shots are given by their places in the list.
-struct PictureLine {
-    std::string name;
-    std::vector<std::vector<std::size_t>> cells;  // beside PictureGrid::columns
-    /// The truth of all of them, if it is one picture; it stands once, before them.
-    std::vector<std::size_t> truth;
-};
-
-struct PictureRow {
-    std::string label;  // "living room"; empty where there is one row
-    std::vector<PictureLine> lines;
-};
-
-/// A row or column of the table that the pictures do not tell apart is none here: rows of several
-/// measures of one picture are one row. Where a single column is left, the last of the axes of rows
-/// lies along the columns.
-struct PictureGrid {
-    std::vector<std::string> columns;  // one may be empty: nothing to be told apart
-    /// One picture of truth for each column, the same in every row: stands once, above them.
-    std::vector<std::vector<std::size_t>> truths;  // beside `columns`; or empty
-    std::vector<PictureRow> rows;
-    std::vector<std::size_t> others;  // of cases that no cell shows
-};
-
-using Labels = std::vector<std::optional<std::string>>;  // none: the case is under several
-
-/// Where a case lies in the table.
-struct Place {
-    Labels row, column;
-    std::size_t firstRow = 0, firstColumn = 0;
-};
-
-/// Leaves what both say.
-void keepCommon(const std::vector<std::string>& labels, std::optional<Labels>& common) {
-    if (!common) {
-        common.emplace(labels.begin(), labels.end());
-        return;
-    }
-    for (std::size_t i = 0; i < common->size() && i < labels.size(); ++i) {
-        if ((*common)[i] != labels[i]) (*common)[i].reset();
-    }
-}
-
-std::map<std::string, Place> placesOf(const tables::Table& table,
-                                      const std::set<std::string>& cases) {
-    struct Found {
-        std::optional<Labels> row, column;
-        std::size_t firstRow = 0, firstColumn = 0;
-    };
-    std::map<std::string, Found> found;
-    for (std::size_t r = 0; r < table.rows.size(); ++r) {
-        for (std::size_t c = 0; c < table.rows[r].cells.size(); ++c) {
-            for (const std::string& id : table.rows[r].cells[c].caseIds) {
-                if (!cases.contains(id)) continue;
-                const auto [item, isNew] = found.try_emplace(id, Found{{}, {}, r, c});
-                keepCommon(table.rows[r].labels, item->second.row);
-                keepCommon(table.columns[c].parts, item->second.column);
-                item->second.firstColumn = std::min(item->second.firstColumn, c);
-            }
-        }
-    }
-    std::map<std::string, Place> places;
-    for (auto& [id, item] : found) {
-        for (std::size_t i = 0; i < item.row->size(); ++i) {  // a number says nothing alone
-            auto& label = (*item.row)[i];
-            if (label && parseDouble(*label))
-                label = tables::shownValue(table.rowAxes[i], *label, table.words);
-        }
-        places.emplace(id, Place{*item.row, *item.column, item.firstRow, item.firstColumn});
-    }
-    return places;
-}
-
-/// The distinct labels of a side, in the order of the table.
-std::vector<Labels> distinct(const std::map<std::string, Place>& places, Labels Place::*labels,
-                             std::size_t Place::*first) {
-    std::map<Labels, std::size_t> at;
-    for (const auto& [id, place] : places) {
-        const auto [known, isNew] = at.try_emplace(place.*labels, place.*first);
-        known->second = std::min(known->second, place.*first);
-    }
-    std::vector<Labels> result;
-    for (const auto& [text, order] : at) result.push_back(text);
-    std::ranges::stable_sort(result, {}, [&](const Labels& text) { return at.at(text); });
-    return result;
-}
-
-/// Moves the last axis of the rows that tells cases apart into the columns.
-void layAlongColumns(std::map<std::string, Place>& places) {
-    if (places.empty()) return;
-    std::size_t axis = places.begin()->second.row.size();
-    const auto isAlike = [&](std::size_t i) {
-        return std::ranges::all_of(places, [&](const auto& item) {
-            return item.second.row[i] == places.begin()->second.row[i];
-        });
-    };
-    while (axis > 0 && isAlike(axis - 1)) --axis;
-    if (axis == 0) return;
-    for (auto& [id, place] : places) {
-        place.column = {place.row[axis - 1]};
-        place.firstColumn = place.firstRow;
-        place.row.erase(place.row.begin() + static_cast<std::ptrdiff_t>(axis - 1));
-    }
-}
-
-std::string textOf(const Labels& labels, const tables::Words& words) {
-    std::vector<std::string> said;
-    for (const auto& label : labels) {
-        if (label && !label->empty()) said.push_back(tables::shownName(*label, words));
-    }
-    return joined(said);
-}
-
-/// The truth of each shot, by place in the list.
-std::map<std::size_t, std::size_t> truthsOf(const std::vector<Shot>& shots) {
-    std::map<std::pair<std::string, std::string>, std::size_t> byName;
-    for (std::size_t i = 0; i < shots.size(); ++i) {
-        byName.try_emplace({shots[i].caseId, shots[i].name}, i);
-    }
-    std::map<std::size_t, std::size_t> truths;
-    for (std::size_t i = 0; i < shots.size(); ++i) {
-        if (shots[i].truth.empty()) continue;
-        const auto truth = byName.find({shots[i].caseId, shots[i].truth});
-        if (truth != byName.end()) truths.emplace(i, truth->second);
-    }
-    return truths;
-}
-
-/// The one truth of these shots; none where they have none, or several.
-std::optional<std::size_t> commonTruth(const std::vector<std::size_t>& members,
-                                       const std::vector<Shot>& shots,
-                                       const std::map<std::size_t, std::size_t>& truths) {
-    std::optional<std::size_t> common;
-    for (const std::size_t i : members) {
-        const auto truth = truths.find(i);
-        if (truth == truths.end()) return std::nullopt;
-        if (common && shots[*common].content != shots[truth->second].content) return std::nullopt;
-        if (!common) common = truth->second;
-    }
-    return common;
-}
-
-std::vector<std::size_t> membersOf(const PictureLine& line) {
-    std::vector<std::size_t> members;
-    for (const auto& cell : line.cells) members.insert(members.end(), cell.begin(), cell.end());
-    return members;
-}
-
-/// Puts truths where they stand once: above the columns, before a line, or after each picture.
-void addTruths(const std::vector<Shot>& shots, PictureGrid& grid) {
-    const std::map<std::size_t, std::size_t> truths = truthsOf(shots);
-    std::set<std::string> names;
-    for (const PictureRow& row : grid.rows) {
-        for (const PictureLine& line : row.lines) names.insert(line.name);
-    }
-    const auto isOneEach = [&] {
-        return std::ranges::all_of(grid.rows, [&](const PictureRow& row) {
-            return std::ranges::all_of(row.lines, [&](const PictureLine& line) {
-                return commonTruth(membersOf(line), shots, truths).has_value();
-            });
-        });
-    };
-    if (grid.rows.size() > 1 && names.size() == 1 && !isOneEach()) {
-        std::vector<std::vector<std::size_t>> above;
-        for (std::size_t c = 0; c < grid.columns.size(); ++c) {
-            std::vector<std::size_t> members;
-            for (const PictureRow& row : grid.rows) {
-                const auto& cell = row.lines.front().cells[c];
-                members.insert(members.end(), cell.begin(), cell.end());
-            }
-            const auto truth = commonTruth(members, shots, truths);
-            if (truth) above.push_back({*truth});
-        }
-        if (above.size() == grid.columns.size()) {
-            grid.truths = std::move(above);
-            return;
-        }
-    }
-    for (PictureRow& row : grid.rows) {
-        for (PictureLine& line : row.lines) {
-            const std::vector<std::size_t> members = membersOf(line);
-            if (const auto truth = commonTruth(members, shots, truths)) {
-                line.truth = {*truth};
-                continue;
-            }
-            for (auto& cell : line.cells) {
-                std::vector<std::size_t> withTruths;
-                for (const std::size_t i : cell) {
-                    withTruths.push_back(i);
-                    if (truths.contains(i)) withTruths.push_back(truths.at(i));
-                }
-                cell = std::move(withTruths);
-            }
-        }
-    }
-}
-
 /// Of a claim that two have one mean: the noisy pictures themselves say less, and stand folded.
 bool isOfMeans(const Shot& shot) {
     return shot.baseName.ends_with(metrics::kDifferencesSuffix);
 }
 
-/// The grid of the chosen ones among a run's shots of the table; truths of these come with them.
-PictureGrid pictureGrid(const tables::Table& table, const std::vector<Shot>& shots,
-                        const std::set<std::size_t>& chosen) {
-    std::set<std::string> cases;
-    for (const std::size_t i : chosen) cases.insert(shots[i].caseId);
-    std::map<std::string, Place> places = placesOf(table, cases);
-    std::vector<Labels> columns = distinct(places, &Place::column, &Place::firstColumn);
-    if (columns.size() == 1) {
-        layAlongColumns(places);
-        columns = distinct(places, &Place::column, &Place::firstColumn);
-    }
-    const std::vector<Labels> rows = distinct(places, &Place::row, &Place::firstRow);
-    PictureGrid grid;
-    for (const Labels& column : columns) grid.columns.push_back(textOf(column, table.words));
-    for (const Labels& row : rows)
-        grid.rows.push_back({rows.size() > 1 ? textOf(row, table.words) : "", {}});
-    const std::map<std::size_t, std::size_t> truths = truthsOf(shots);
-    std::set<std::size_t> shownAsTruth;
-    for (const auto& [shot, truth] : truths) {
-        if (chosen.contains(shot)) shownAsTruth.insert(truth);
-    }
-    for (const std::size_t i : chosen) {
-        if (shownAsTruth.contains(i)) continue;
-        const auto place = places.find(shots[i].caseId);
-        if (place == places.end()) {
-            grid.others.push_back(i);
-            if (truths.contains(i)) grid.others.push_back(truths.at(i));
-            continue;
-        }
-        const auto r =
-            static_cast<std::size_t>(std::ranges::find(rows, place->second.row) - rows.begin());
-        const auto c = static_cast<std::size_t>(std::ranges::find(columns, place->second.column) -
-                                                columns.begin());
-        std::vector<PictureLine>& lines = grid.rows[r].lines;
-        auto line = std::ranges::find(lines, shots[i].name, &PictureLine::name);
-        if (line == lines.end()) {
-            lines.push_back({shots[i].name, {}, {}});
-            line = lines.end() - 1;
-            line->cells.resize(columns.size());
-        }
-        line->cells[c].push_back(i);
-    }
-    std::erase_if(grid.rows, [](const PictureRow& row) { return row.lines.empty(); });
-    addTruths(shots, grid);
-    return grid;
-}
-
-/// The pictures of one run on a page. The viewer reads what it needs from the data attributes.
+/// The pictures of a page, of all runs. The viewer reads what it needs from the data attributes.
 class Pictures {
   public:
-    Pictures(const Page& page, std::size_t run, const Model& model)
+    Pictures(const Page& page, const Model& model)
         : page_(page),
-          shots_(page.parts[run].shots),
-          words_(page.parts[run].table.words),
-          letter_(model.isComparison() ? Model::letter(run) : ""),
-          prefix_(Model::letter(run) + "-" + page.slug) {
-        const RunPart& part = page.parts[run];
-        const std::set<std::size_t> main = mainShots(
-            shots_, part.experiment ? part.experiment->shows : std::vector<std::string>());
-        main_ = pictureGrid(part.table, shots_, main);
+          all_(shotsOf(page, model)),
+          shots_(all_.shots),
+          words_(page.parts[all_.runs.front()].table.words) {
+        const config::Experiment* experiment = page.parts[all_.runs.front()].experiment;
+        const std::set<std::size_t> main =
+            mainShots(shots_, experiment ? experiment->shows : std::vector<std::string>());
+        main_ = pictureGrid(page, all_, words_, main);
         std::set<std::size_t> shown;
         collect(main_, shown);
         std::set<std::size_t> rest;
         for (std::size_t i = 0; i < shots_.size(); ++i) {
             if (!shown.contains(i) && !isRepeated(i, shown)) rest.insert(i);
         }
-        rest_ = pictureGrid(part.table, shots_, rest);
+        rest_ = pictureGrid(page, all_, words_, rest);
         findTruths();
-        if (part.experiment) findMissing(part.experiment->shows);
+        if (experiment) findMissing(experiment->shows);
     }
 
     std::string html() const {
@@ -300,9 +56,7 @@ class Pictures {
             further = "<details class=\"further\"><summary>Further pictures of these cases: " +
                       escapeXml(namesOf(rest_)) + "</summary>\n" + further + "</details>\n";
         }
-        html += further + missing_;
-        if (html.empty() || letter_.empty()) return html;
-        return fmt::format("<h4>{}</h4>\n{}", letter_, html);
+        return html + further + missing_;
     }
 
   private:
@@ -412,7 +166,9 @@ class Pictures {
                                           : caseOf(shots_[i]);
     }
 
-    std::string idOf(std::size_t i) const { return fmt::format("{}-{}", prefix_, i); }
+    std::string idOf(std::size_t i) const {
+        return fmt::format("{}-{}-{}", Model::letter(all_.runs[i]), page_.slug, all_.places[i]);
+    }
 
     /// A picture, what it shows, and below it how far it is from its truth.
     std::string figureHtml(std::size_t i, const std::string& says) const {
@@ -420,7 +176,8 @@ class Pictures {
         const std::string title = titleOf(i);
         std::string data = fmt::format(
             " id=\"{}\" data-run=\"{}\" data-case=\"{}\" data-title=\"{}\" data-name=\"{}\"",
-            escapeXml(idOf(i)), letter_, escapeXml(shot.caseId), escapeXml(title),
+            escapeXml(idOf(i)), page_.parts.size() > 1 ? Model::letter(all_.runs[i]) : "",
+            escapeXml(page_.parts[all_.runs[i]].shots[all_.places[i]].caseId), escapeXml(title),
             escapeXml(nameOf(shot.name)));
         if (!shot.full.empty()) data += fmt::format(" data-full=\"{}\"", shot.full);
         if (!shot.light.empty()) data += fmt::format(" data-light=\"{}\"", joined(shot.light, " "));
@@ -521,13 +278,12 @@ class Pictures {
     }
 
     const Page& page_;
+    const PageShots all_;
     const std::vector<Shot>& shots_;
     const tables::Words& words_;
     PictureGrid main_;  // what the page shows first
     PictureGrid rest_;
-    std::string missing_;  // in words
-    std::string letter_;
-    std::string prefix_;
+    std::string missing_;                        // in words
     std::map<std::size_t, std::size_t> truths_;  // of each shot, the one that is shown
 };
 
@@ -558,15 +314,14 @@ std::set<std::size_t> mainShots(const std::vector<Shot>& shots,
 }
 
 std::string imagesHtml(const Page& page, const Model& model) {
-    std::string html;
-    for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        if (page.parts[run].shots.empty()) continue;
-        html += Pictures(page, run, model).html();
-    }
+    const auto hasNone = [](const RunPart& part) { return part.shots.empty(); };
+    if (std::ranges::all_of(page.parts, hasNone)) return "";
+    const std::string html = Pictures(page, model).html();
     if (html.empty()) return "";
     std::string says =
         "<span class=\"on-screen\">A click on a picture lays it beside its truth or another "
         "one.</span>";
+    if (model.isComparison()) says += " Pictures of one case stand beside each other.";
     const GalleryPlace& place = model.places.front();
     if (place.embedding == GalleryPlace::Embedding::Reduced) {
         says += fmt::format(
@@ -574,7 +329,7 @@ std::string imagesHtml(const Page& page, const Model& model) {
             "the whole ones.",
             place.reducedPx);
     }
-    return fmt::format("<h3>Images</h3>\n<p class=\"soft small\">{}</p>\n", says) + html;
+    return fmt::format("<h3>Images</h3>\n<p class=\"soft small\">{}</p>\n{}", says, html);
 }
 
 }  // namespace gfxrepro::report

@@ -423,6 +423,31 @@ std::string saidHtml(const Model& model) {
     return html + "</div>\n";
 }
 
+/// What became of each number of two runs: what is not the same, and the others folded.
+std::string comparedHtml(const Model& model) {
+    if (model.comparedInAll.empty()) return "";
+    const auto rowsOf = [&](bool isAlarm) {
+        std::string rows;
+        for (const ComparedNumber& one : model.compared) {
+            if (one.isAlarm != isAlarm) continue;
+            rows += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td></tr>\n",
+                                escapeXml(one.title), escapeXml(one.verdict), escapeXml(one.says));
+        }
+        if (rows.empty()) return rows;
+        return "<div class=\"scroll\"><table class=\"compared\">\n<thead><tr><th "
+               "scope=\"col\">number"
+               "</th><th scope=\"col\">verdict</th><th scope=\"col\">B ÷ A [95 %], or why</th></tr>"
+               "</thead>\n<tbody>\n" +
+               rows + "</tbody></table></div>\n";
+    };
+    std::string html =
+        fmt::format("<p class=\"told\">{}</p>\n", escapeXml(model.comparedInAll)) + rowsOf(true);
+    if (const std::string others = rowsOf(false); !others.empty()) {
+        html += "<details><summary>All other numbers</summary>\n" + others + "</details>\n";
+    }
+    return html;
+}
+
 /// Verdicts other than those that the configs expect.
 std::string unexpectedHtml(const Model& model) {
     std::string items;
@@ -472,6 +497,41 @@ std::string missingHtml(const Model& model) {
 
 }  // namespace
 
+std::string differencesHtml(const Model& model) {
+    if (!model.isComparison()) return "";
+    std::size_t common = 0, differing = 0;
+    std::string items;
+    for (const Page& page : model.pages) {
+        std::map<std::string, std::vector<std::pair<std::size_t, const ClaimResult*>>> byId;
+        for (std::size_t run = 0; run < page.parts.size(); ++run) {
+            for (const ClaimResult& claim : page.parts[run].claims) {
+                byId[claim.id].emplace_back(run, &claim);
+            }
+        }
+        for (const auto& [id, said] : byId) {
+            if (said.size() < 2) continue;
+            ++common;
+            const auto isFirsts = [&](const auto& one) {
+                return one.second->verdict == said.front().second->verdict;
+            };
+            if (std::ranges::all_of(said, isFirsts)) continue;
+            ++differing;
+            std::string badges, words;
+            for (const auto& [run, claim] : said) {
+                badges += model.boldLetter(run) + verdictBadge(claim->verdict) + ' ';
+                if (words.empty()) words = claim->text;
+            }
+            items += fmt::format("<li>{} {}: {}</li>\n", badges, pageLink(page),
+                                 escapeXml(words.empty() ? id : words));
+        }
+    }
+    if (common == 0) return comparedHtml(model);
+    std::string html = fmt::format("<p class=\"told differences\">{} of {} verdicts differ{}</p>\n",
+                                   differing, common, items.empty() ? "." : ":");
+    if (!items.empty()) html += "<ul class=\"examples\">\n" + items + "</ul>\n";
+    return html + comparedHtml(model);
+}
+
 std::string machineHtml(const Model& model) {
     std::string html;
     for (std::size_t run = 0; run < model.runs.size(); ++run) {
@@ -495,7 +555,8 @@ std::string overviewHtml(const Model& model) {
     std::string html =
         fmt::format("<section class=\"page\" id=\"overview\">\n<h1 tabindex=\"-1\">{}</h1>\n",
                     title) +
-        machineHtml(model) + printedHtml(model);
+        machineHtml(model) + (model.isOneTable() ? "" : differencesHtml(model)) +
+        printedHtml(model);
     if (!model.isOneTable() || model.isComparison()) {
         for (const DocumentPages& document : model.byDocument()) {
             html += documentHtml(document, model);

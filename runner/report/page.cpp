@@ -372,17 +372,14 @@ std::string assumptionsHtml(const std::vector<config::Assumption>& assumptions,
     return html + "</tbody></table></div>\n";
 }
 
-std::string curvesHtml(const Page& page, const Model& model) {
+std::string curvesHtml(const Page& page) {
     std::string html;
-    for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        for (const Curve* curve : page.parts[run].curves) {
-            html += fmt::format(
-                "<figure class=\"curve\">{}<figcaption>{}{}{}</figcaption></figure>\n", curve->svg,
-                model.prefix(run), escapeXml(curve->title),
-                curve->problem.empty()
-                    ? ""
-                    : fmt::format(" <span class=\"soft\">({})</span>", escapeXml(curve->problem)));
-        }
+    for (const Curve& curve : page.curves) {
+        html += fmt::format("<figure class=\"curve\">{}<figcaption>{}{}</figcaption></figure>\n",
+                            curve.svg, escapeXml(curve.title),
+                            curve.problem.empty() ? ""
+                                                  : fmt::format(" <span class=\"soft\">({})</span>",
+                                                                escapeXml(curve.problem)));
     }
     return html.empty() ? "" : "<h3>Curves</h3>\n<div class=\"curves\">\n" + html + "</div>\n";
 }
@@ -511,7 +508,8 @@ std::string pageHtml(const Page& page, const Model& model) {
         "<section class=\"page\" id=\"{0}\">\n<{1} tabindex=\"-1\">{2}</{1}>\n"
         "<p class=\"soft small\">{3}</p>\n{4}{5}",
         escapeXml(page.slug), heading, escapeXml(page.heading()), escapeXml(page.id),
-        verdictLineHtml(page, model), model.isOneTable() ? machineHtml(model) : "");
+        verdictLineHtml(page, model),
+        model.isOneTable() ? machineHtml(model) + differencesHtml(model) : "");
     std::string claims = claimsHtml(page, model, ClaimDetail::Full);
     if (!claims.empty()) claims = "<h3>Claims</h3>\n" + claims;
     if (!claims.empty() && model.isOneTable()) {
@@ -519,7 +517,7 @@ std::string pageHtml(const Page& page, const Model& model) {
             "<details><summary>What the verdicts mean</summary>\n" + legendHtml() + "</details>\n";
     }
     const RunPart* shown = page.shown();
-    if (!shown) return html + claims + "</section>\n";
+    if (!shown) return html + tableHtml(page, model) + claims + "</section>\n";
     html += importedHtml(page, model);
     const std::string images = imagesHtml(page, model);
     // Of a figure, or a table of pictures, the numbers come after them.
@@ -528,7 +526,7 @@ std::string pageHtml(const Page& page, const Model& model) {
     if (isPicture) html += images;
     html += comparisonHtml(page, model) + tableHtml(page, model) + remarksHtml(page, model);
     html += claims;
-    html += curvesHtml(page, model);
+    html += curvesHtml(page);
     html += failuresHtml(page, model);
     if (!isPicture) html += images;
     html += assumptionsHtml(shown->experiment->assumptions, shown->table.words);

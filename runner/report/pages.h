@@ -30,7 +30,6 @@ struct RunPart {
     tables::Table table;
     std::vector<claims::ClaimResult> claims;
     std::vector<Shot> shots;
-    std::vector<const Curve*> curves;
     std::vector<Failure> failures;
     std::vector<const config::Case*> cases;
 };
@@ -42,6 +41,7 @@ struct Page {
     std::string label;
     std::string title;
     std::vector<RunPart> parts;  // beside Model::runs
+    std::vector<Curve> curves;
 
     std::string paper() const { return id.substr(0, id.find('/')); }
     /// The first run's that has the table itself; null where none has.
@@ -70,6 +70,8 @@ struct Model {
     std::vector<Page> pages;
     std::vector<GalleryPlace> places;  // beside `runs`
     std::vector<config::Document> documents;
+    std::vector<ComparedNumber> compared = {};  // as ReportOptions has it
+    std::string comparedInAll = {};
     std::string findings = {};  // the address of their folder from the file; empty: no links
 
     bool isComparison() const { return runs.size() > 1; }
@@ -132,6 +134,10 @@ std::string headOfFile(const std::string& title);
 std::string overviewHtml(const Model& model);
 /// A table with its claims, curves, assumptions, images and cases.
 std::string pageHtml(const Page& page, const Model& model);
+
+/// Of several runs "4 of 315 verdicts differ: …", each with what every run says; of a comparison of
+/// two then its numbers. Empty for one run.
+std::string differencesHtml(const Model& model);
 
 /// A line a run: device, processor, profile, day, how much was measured.
 std::string machineHtml(const Model& model);

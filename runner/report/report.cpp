@@ -131,12 +131,16 @@ void addRun(std::size_t index, const GalleryPlace& place, const PicturesDone& pr
         part.failures = failuresOf(experiment.id, run.records);
         std::ranges::copy_if(shots, std::back_inserter(part.shots),
                              [&](const Shot& shot) { return shot.table == experiment.id; });
-        for (const Curve& curve : run.curves) {
-            if (curve.table == experiment.id) part.curves.push_back(&curve);
+        const auto isOfPage = [&](const Curve& curve) { return curve.table == experiment.id; };
+        if (!model.isComparison()) {
+            std::ranges::copy_if(run.curves, std::back_inserter(page.curves), isOfPage);
         }
         for (const config::Case& item : run.cases) {
             if (item.experiment == experiment.id) part.cases.push_back(&item);
         }
+    }
+    for (const tables::Table& table : run.keptTables) {
+        pageOf(table.id, model).parts[index].table = table;
     }
     for (const claims::ClaimResult& claim : run.claims) {
         pageOf(claim.table, model).parts[index].claims.push_back(claim);
@@ -226,6 +230,8 @@ Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
                  const ReportOptions& options, const fs::path& made) {
     using Embedding = GalleryPlace::Embedding;
     Model model{runs, {}, {}, options.documents};
+    model.compared = options.compared;
+    model.comparedInAll = options.comparedInAll;
     std::uintmax_t bytes = 0;
     for (const ReportRun& run : runs) bytes += imagesBytes(run);
     const Embedding embedding = bytes <= kEmbeddedImagesBytes ? Embedding::Whole
@@ -241,6 +247,17 @@ Model buildModel(std::span<const ReportRun> runs, const fs::path& file,
             {folder, made.empty() ? madeFolder(folder, i, file) : made / Model::letter(i), file,
              embedding, reducedPx});
         addRun(i, model.places.back(), options.progress, model);
+    }
+    if (model.isComparison()) {
+        std::vector<std::vector<tables::Table>> tables;
+        std::vector<std::vector<config::Experiment>> experiments;
+        for (const ReportRun& run : runs) {
+            tables.push_back(run.tables);
+            experiments.push_back(run.experiments);
+        }
+        for (Curve& curve : overlaidCurves(tables, experiments)) {
+            pageOf(curve.table, model).curves.push_back(std::move(curve));
+        }
     }
     if (options.findings.empty() || options.embeds) return model;
     const fs::path beside = fs::absolute(file).parent_path();

@@ -28,12 +28,19 @@ struct ReportRun {
     std::vector<tables::Table> tables;  // beside `experiments`
     /// Of these tables; or as they were kept, of a run of which only its verdicts are at hand.
     std::vector<claims::ClaimResult> claims;
-    std::vector<Curve> curves;
+    std::vector<Curve> curves;  // of a run alone; those of several are laid over one another
     std::vector<records::Record> records;
     std::vector<config::Case> cases;  // of its plan
     /// For a shell: what measures a table or a case again, by its id.
     std::map<std::string, std::string> commands = {};
     std::map<std::string, std::vector<std::string>> events = {};  // of a case, for people
+    std::vector<tables::Table> keptTables = {};  // of kept results: their cells, no experiments
+};
+
+/// A number of two runs: "sweep/mine … wall_time_ms", "slower", "× 1.2 [1.1, 1.3]".
+struct ComparedNumber {
+    std::string title, verdict, says;
+    bool isAlarm = false;
 };
 
 /// A file that is to be sent is no larger, if its pictures can be small enough: mail takes no more.
@@ -45,6 +52,9 @@ struct ReportOptions {
     PicturesDone progress = {};                    // of each run
     /// The folder of findings, which claims are shown by; empty where it is not at hand.
     std::filesystem::path findings = {};
+    /// Of a comparison of two runs: what became of each number, for its page; empty without one.
+    std::vector<ComparedNumber> compared = {};
+    std::string comparedInAll = {};  // "2 slower, 40 same"
 };
 
 /// One file that asks no network and no other file but images: what reproduced and what did not,

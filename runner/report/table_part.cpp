@@ -14,6 +14,7 @@
 #include "runner/tables/labels.h"
 #include "runner/tables/nearness.h"
 #include "runner/tables/printed.h"
+#include "runner/tables/run_ratio.h"
 #include "runner/tables/table.h"
 
 namespace gfxrepro::report {
@@ -56,7 +57,12 @@ class Overlay {
     }
     bool hasPrinted(const std::string& column) const { return printedColumns_.contains(column); }
     bool isOnlyPrinted() const { return tables_.front()->isOnlyPrinted; }
-    const Table& first() const { return *tables_.front(); }
+    /// The first that knows its words: kept results do not.
+    const Table& first() const {
+        const auto knows = [](const Table* table) { return !table->label.empty(); };
+        const auto found = std::ranges::find_if(tables_, knows);
+        return found == tables_.end() ? *tables_.front() : **found;
+    }
     bool isEmpty() const { return tables_.empty() || columns_.empty() || rows_.empty(); }
     /// What stands under one column's head: the printed number, then a number a run.
     std::size_t widthOf(const std::string& column) const {
@@ -75,15 +81,18 @@ class Overlay {
 Overlay::Overlay(const Page& page, const std::function<bool(const Table&, std::size_t)>& isShown) {
     std::set<std::vector<std::string>> seen;
     for (std::size_t run = 0; run < page.parts.size(); ++run) {
-        if (!page.parts[run].experiment) continue;
         const Table& table = page.parts[run].table;
+        if (table.columns.empty()) continue;
         runs_.push_back(run);
         tables_.push_back(&table);
         for (std::size_t i = 0; i < table.columns.size(); ++i) {
             const tables::TableColumn& column = table.columns[i];
             const auto isSame = [&](const auto& known) { return known.label == column.label; };
-            if (std::ranges::none_of(columns_, isSame) && isShown(table, i)) {
-                columns_.push_back(column);
+            const auto known = std::ranges::find_if(columns_, isSame);
+            if (known == columns_.end()) {
+                if (isShown(table, i)) columns_.push_back(column);
+            } else if (known->parts.empty()) {
+                *known = column;  // kept results have their labels alone
             }
         }
         std::map<std::vector<std::string>, const TableRow*>& byLabels = rowOf_.emplace_back();
@@ -224,8 +233,21 @@ std::string titleOf(const Cell& cell) {
     return cell.openParameters.empty() ? "" : "not given: " + tables::openText(cell.openParameters);
 }
 
-/// `place`: its id in the file, where something leads to it.
-std::string cellHtml(const Cell* cell, std::size_t run, const std::string& place) {
+/// "÷ A 1.05 [0.98, 1.12]" of a later run.
+std::string ratioOfRunsHtml(const Cell& cell, const Cell* first) {
+    const auto ratio = first ? tables::ratioOfRuns(cell, *first) : std::nullopt;
+    if (!ratio) return "";
+    std::string says = fmt::format("÷ A {:.3g}", ratio->ratio);
+    if (ratio->interval) {
+        says += fmt::format(" [{:.3g}, {:.3g}]", ratio->interval->low, ratio->interval->high);
+    }
+    return fmt::format("<span class=\"ratio of-runs\">{}</span>", says);
+}
+
+/// `place`: its id in the file, where something leads to it. `first` is the cell of run A, of a
+/// later run.
+std::string cellHtml(const Cell* cell, std::size_t run, const std::string& place,
+                     const Cell* first) {
     if (!cell || !cell->isPlanned) return "<td></td>";
     std::string anchors;
     for (const std::string& id : cell->caseIds) anchors += caseAnchor(run, id) + ' ';
@@ -260,6 +282,9 @@ std::string cellHtml(const Cell* cell, std::size_t run, const std::string& place
         below += (below.empty() ? "" : " ") + ratio;
     }
     if (!below.empty()) html += fmt::format("<span class=\"interval\">{}</span>", below);
+    if (const std::string ratio = ratioOfRunsHtml(*cell, first); !ratio.empty()) {
+        html += fmt::format("<span class=\"interval\">{}</span>", ratio);
+    }
     return html + "</td>";
 }
 
@@ -324,10 +349,13 @@ std::string rowHtml(const Overlay& overlay, std::size_t row, const ShownLabels& 
                                 escapeXml(overlay.printed(labels, column.label).value_or("")));
         }
         if (overlay.isOnlyPrinted()) continue;
+        const Cell* first = nullptr;
         for (std::size_t i = 0; i < overlay.runs().size(); ++i) {
             const Cell* cell = overlay.find(i, overlay.find(i, labels), column.label);
             const auto place = places.find(cell);
-            html += cellHtml(cell, overlay.runs()[i], place == places.end() ? "" : place->second);
+            html += cellHtml(cell, overlay.runs()[i], place == places.end() ? "" : place->second,
+                             first);
+            if (overlay.runs()[i] == 0) first = cell;
         }
     }
     return html + "</tr>\n";
@@ -355,7 +383,7 @@ std::string constantsHtml(const Page& page) {
 }
 
 /// What stands under the numbers of this table.
-std::string smallPrintHtml(const Page& page) {
+std::string smallPrintHtml(const Page& page, const Model& model) {
     const auto has = [&](bool (*isSuch)(const Cell&)) {
         return std::ranges::any_of(page.parts,
                                    [&](const RunPart& part) { return part.table.hasCell(isSuch); });
@@ -379,6 +407,11 @@ std::string smallPrintHtml(const Page& page) {
     }
     if (has([](const Cell& cell) { return !ratioHtml(cell).empty(); })) {
         parts.emplace_back("× measured ÷ printed, where it was measured at the printed parameters");
+    }
+    if (model.isComparison()) {
+        parts.emplace_back(
+            "÷ A that of the first run, with 95 % where both have an interval; of times it holds "
+            "what the machine did between the runs, too");
     }
     std::string says = joined(parts, " · ");
     if (!says.empty()) says = "Small print under a number: " + says + ". ";
@@ -457,7 +490,7 @@ std::string tableHtml(const Page& page, const Model& model) {
             steps.columns().size(), steps.columns().size() == 1 ? "" : "s",
             resultsHtml(steps, page, model));
     }
-    html += smallPrintHtml(page);
+    html += smallPrintHtml(page, model);
     bool hasStandIn = false;
     for (const auto& labels : overlay.rows()) hasStandIn |= isStandIn(overlay, labels);
     const auto isMarked = [&](std::size_t run) { return page.parts[run].table.hasCalibrated(); };

@@ -390,6 +390,50 @@ void addReference(Figure& figure, double slope) {
     }
 }
 
+Figure overlaid(const std::vector<Figure>& figures, const std::vector<std::string>& letters) {
+    if (figures.size() == 1) return figures.front();
+    std::vector<std::string> names;
+    for (const Figure& figure : figures) {
+        for (const std::string& name : figure.curveNames) {
+            if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+        }
+    }
+    Figure all = figures.front();
+    all.runCount = figures.size();
+    all.curveNames.clear();
+    all.panels.clear();
+    std::set<std::string> withPrinted;  // panel and curve
+    for (std::size_t run = 0; run < figures.size(); ++run) {
+        const Figure& figure = figures[run];
+        for (const std::string& name : names) all.curveNames.push_back(letters[run] + ": " + name);
+        for (const FigurePanel& panel : figure.panels) {
+            const auto isSame = [&](const FigurePanel& other) {
+                return other.title == panel.title && other.yLabel == panel.yLabel;
+            };
+            auto place = std::ranges::find_if(all.panels, isSame);
+            if (place == all.panels.end()) {
+                place = all.panels.insert(place, {panel.title, panel.yLabel, {}, panel.marks});
+                place->curves.resize(names.size() * figures.size());
+            }
+            for (std::size_t i = 0; i < panel.curves.size(); ++i) {
+                const auto name = std::ranges::find(names, figure.curveNames[i]) - names.begin();
+                FigureCurve& curve =
+                    place->curves[run * names.size() + static_cast<std::size_t>(name)];
+                curve = panel.curves[i];
+                curve.name = letters[run] + ": " + figure.curveNames[i];
+                const std::string key =
+                    panel.title + '\n' + panel.yLabel + '\n' + panel.curves[i].name;
+                if (!curve.printed.empty() && !withPrinted.insert(key).second)
+                    curve.printed.clear();
+            }
+        }
+        if (run == 0) continue;
+        for (const std::string& note : figure.notes)
+            all.notes.push_back(letters[run] + ": " + note);
+    }
+    return all;
+}
+
 std::string slopeName(double slope) {
     return fmt::format("slope {}{}", slope < 0.0 ? "−" : "",
                        records::shortestText(std::abs(slope)));

@@ -2,6 +2,7 @@
 // specification come to. Knows nothing of how it is drawn.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,6 +54,7 @@ struct Figure {
     bool isLogY = false;
     std::optional<double> slope;  // of the references: exponent of x
     std::vector<std::string> curveNames;
+    std::size_t runCount = 1;  // whose curves lie one behind the other: as many names of each
     std::vector<FigurePanel> panels;  // those that have a point
     std::vector<std::string> notes;   // what was left out and why, a sentence each
 };
@@ -72,6 +74,10 @@ std::string whatIsAbsent(const config::PlotSpec& plot, const Table& table);
 /// logarithmic axes, from the first to the last of them. `slope`: exponent of x. The figure has its
 /// `slope` where a curve got one. Values must be positive, as makeFigure's on such axes are.
 void addReference(Figure& figure, double slope);
+
+/// The same plot of several runs, laid over one another: of each run a curve of every name, which
+/// its letter precedes. What is printed stands once. Throws nothing: one figure stays as it is.
+Figure overlaid(const std::vector<Figure>& figures, const std::vector<std::string>& letters);
 
 /// "slope −0.5".
 std::string slopeName(double slope);

@@ -217,5 +217,22 @@ TEST(Nearness, OtherParametersAndFittedCellsAreNoEvidence) {
         << "as they are not counted as printed cells of tables";
 }
 
+TEST(Figure, SeveralRunsLieOverOneAnother) {
+    const Figure figure = figureOf(sized("[{x: size, y: draw_ms, by: scene}]"), sizedRecords());
+    Figure other = figure;
+    other.curveNames.erase(other.curveNames.begin());
+    other.panels[0].curves.erase(other.panels[0].curves.begin());
+    const Figure both = overlaid({figure, other}, {"A", "C"});
+    EXPECT_EQ(both.runCount, 2U);
+    EXPECT_THAT(both.curveNames, ElementsAre("A: a", "A: b", "C: a", "C: b"));
+    ASSERT_EQ(both.panels.size(), 1U);
+    const std::vector<FigureCurve>& curves = both.panels[0].curves;
+    ASSERT_EQ(curves.size(), 4U);
+    EXPECT_TRUE(curves[2].points.empty()) << "C has no a";
+    EXPECT_EQ(curves[3].name, "C: b");
+    EXPECT_EQ(curves[3].points.size(), curves[1].points.size());
+    EXPECT_EQ(overlaid({figure}, {"A"}).curveNames, figure.curveNames) << "one stays as it is";
+}
+
 }  // namespace
 }  // namespace gfxrepro::tables
