@@ -200,7 +200,7 @@ std::string svgElement(double width, double height, const std::string& title,
                        const std::string& content) {
     return fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{0}\" width=\"{1:.5g}\" "
-        "height=\"{2:.5g}\" viewBox=\"0 0 {1:.5g} {2:.5g}\" role=\"img\" overflow=\"visible\" "
+        "height=\"{2:.5g}\" viewBox=\"0 0 {1:.5g} {2:.5g}\" role=\"group\" overflow=\"visible\" "
         "fill=\"currentColor\" font-size=\"{3}\" font-family=\"system-ui, "
         "sans-serif\">\n<title>{4}</title>\n{5}</svg>\n",
         width < kWidePx ? "narrow" : "wide", width, height, kFontPx, escapeXml(title), content);

@@ -1,8 +1,12 @@
-"""A headless Chromium by the WebDriver protocol, as far as the tests of the report need it."""
+"""A headless Chromium by the WebDriver protocol, as far as the tests of the report need it; and Firefox, which speaks one of its
+own with the same commands (Marionette), where GFXREPRO_BROWSER is "firefox"."""
 
 import base64
 import json
+import os
+import pathlib
 import shutil
+import socket
 import subprocess
 import tempfile
 import time
@@ -14,9 +18,16 @@ FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-
          "--force-device-scale-factor=1"]
 
 
+IS_FIREFOX = os.environ.get("GFXREPRO_BROWSER") == "firefox"
+
+
 def missing():
     """The program that the tests need and that is not there; None if all are."""
-    return next((p for p in ("chromium", "chromedriver") if not shutil.which(p)), None)
+    return next((p for p in (("firefox-esr",) if IS_FIREFOX else ("chromium", "chromedriver")) if not shutil.which(p)), None)
+
+
+def browser():
+    return Firefox() if IS_FIREFOX else Browser()
 
 
 class Browser:
@@ -131,3 +142,62 @@ class Browser:
         """Errors and warnings of the console since the last call."""
         return [entry["message"] for entry in self._call("POST", "/se/log", {"type": "browser"})
                 if entry["level"] in ("SEVERE", "WARNING")]
+
+
+class Firefox(Browser):
+    """What Chromium alone has (emulated media, its console) does nothing here."""
+
+    COMMANDS = {"/url": "Navigate", "/execute/sync": "ExecuteScript", "/element": "FindElement", "/actions": "PerformActions",
+                "/window/rect": "SetWindowRect", "/screenshot": "TakeScreenshot", "/click": "ElementClick", "/value": "ElementSendKeys"}
+    PREFERENCES = {"marionette.port": 0, "layout.css.devPixelsPerPx": '"1"', "app.update.disabledForTesting": "true",
+                   "datareporting.policy.dataSubmissionEnabled": "false", "browser.shell.checkDefaultBrowser": "false"}
+
+    def __enter__(self):
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        folder = pathlib.Path(self.profile.name)
+        (folder / "user.js").write_text("".join(f'user_pref("{name}", {value});\n' for name, value in self.PREFERENCES.items()))
+        self.driver = subprocess.Popen(["firefox-esr", "--headless", "--no-remote", "--marionette", "--profile", folder],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + 60
+        while not (folder / "MarionetteActivePort").exists():
+            if self.driver.poll() is not None or time.monotonic() > end:
+                raise RuntimeError("firefox-esr did not start")
+            time.sleep(0.1)
+        self.socket = socket.create_connection(("127.0.0.1", int((folder / "MarionetteActivePort").read_text())), timeout=120)
+        self.stream = self.socket.makefile("rb")
+        self._receive()
+        self._send("NewSession", {"capabilities": {"alwaysMatch": {"acceptInsecureCerts": True}}})
+        return self
+
+    def __exit__(self, *_):
+        self.stream.close()
+        self.socket.close()
+        self.driver.terminate()
+        self.driver.wait(20)
+        self.profile.cleanup()
+
+    def _receive(self):
+        size = b""
+        while not size.endswith(b":"):
+            size += self.stream.read(1)
+        return json.loads(self.stream.read(int(size[:-1])))
+
+    def _send(self, name, parameters):
+        text = json.dumps([0, 0, "WebDriver:" + name, parameters]).encode()
+        self.socket.sendall(b"%d:%s" % (len(text), text))
+        _, _, error, result = self._receive()
+        if error:
+            raise RuntimeError(error["message"])
+        return result.get("value") if isinstance(result, dict) and "value" in result else result
+
+    def _call(self, method, path, body=None):
+        parts = path.split("/")
+        if parts[1] == "element" and len(parts) == 4:  # /element/ID/click
+            return self._send(self.COMMANDS["/" + parts[3]], {"id": parts[2], "full": False, **(body or {})})
+        return self._send(self.COMMANDS[path], {"full": False, **(body or {})} if path == "/screenshot" else body or {})
+
+    def emulate(self, media="", scheme="light"):
+        pass
+
+    def complaints(self):
+        return []

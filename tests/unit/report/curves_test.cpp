@@ -173,7 +173,7 @@ TEST(FigureSvg, NamesWhatIsThere) {
         EXPECT_THAT(svg, HasSubstr(text));
     }
     EXPECT_THAT(svg, StartsWith("<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"wide\""));
-    EXPECT_THAT(svg, HasSubstr(" role=\"img\" "));
+    EXPECT_THAT(svg, HasSubstr(" role=\"group\" "));
     const std::string alone = svgOf(figureOf({point(1, 10), point(4, 30)}));
     EXPECT_THAT(alone, Not(HasSubstr(">one</text>")));  // its axis has its name
     EXPECT_THAT(alone, Not(HasSubstr("printed")));
