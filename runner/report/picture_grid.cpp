@@ -64,11 +64,23 @@ std::map<std::string, Place> placesOf(const tables::Table& table,
         std::optional<Labels> row, column;
         std::size_t firstRow = 0, firstColumn = 0;
     };
+    // A column of ratios to one row takes that row's cases in all rows: they lie where others say.
+    std::map<std::pair<std::string, std::size_t>, std::size_t> rowsOf;  // of a case in a column
+    std::map<std::string, std::size_t> fewestRows;
+    for (const tables::TableRow& row : table.rows) {
+        for (std::size_t c = 0; c < row.cells.size(); ++c) {
+            for (const std::string& id : row.cells[c].caseIds) ++rowsOf[{id, c}];
+        }
+    }
+    for (const auto& [place, count] : rowsOf) {
+        const auto [fewest, isNew] = fewestRows.try_emplace(place.first, count);
+        fewest->second = std::min(fewest->second, count);
+    }
     std::map<std::string, Found> found;
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
         for (std::size_t c = 0; c < table.rows[r].cells.size(); ++c) {
             for (const std::string& id : table.rows[r].cells[c].caseIds) {
-                if (!cases.contains(id)) continue;
+                if (!cases.contains(id) || rowsOf[{id, c}] > fewestRows[id]) continue;
                 const auto [item, isNew] = found.try_emplace(id, Found{{}, {}, r, c});
                 keepCommon(table.rows[r].labels, item->second.row);
                 keepCommon(table.columns[c].parts, item->second.column);

@@ -216,7 +216,7 @@ std::string rivalSentence(const RivalTally& tally, const std::string& rival,
         if (rows == 0) return;
         const std::string where = tally.rows() == 1 ? "the one row"
                                   : rows == tally.rows()
-                                      ? fmt::format("all {} rows", rows)
+                                      ? (rows == 2 ? "both rows" : fmt::format("all {} rows", rows))
                                       : fmt::format("{} of {} rows", rows, tally.rows());
         parts.push_back(fmt::format("{} in {}{}", what, where, times));
     };
@@ -258,16 +258,18 @@ void compareRivals(const Rivals& rivals, const std::vector<std::string>& columns
         RivalCells cells{static_cast<std::size_t>(axis - table.rowAxes.begin()), *column, clock,
                          isTime ? columnNoise(table, {divided}, clock).value_or(0.0) : 0.0};
         findChances(table, rivals.values[0], cells);
+        const auto nameOf = [&](std::size_t i) {  // as in the row
+            return shownName(rivalName(rivals, i, table.words), table.words);
+        };
         if (hasProcessTimes)
             table.judgedByProcess.insert(table.judgedByProcess.end(), {divided, label});
         for (std::size_t i = 1; i < rivals.values.size(); ++i) {
             const RivalTally tally = rivalTallyOf(table, cells, rivals.values[i]);
             if (tally.rows() == 0) continue;
             (tally.open == tally.rows() ? open : told)
-                .push_back(fmt::format("{}: {}.", label.substr(0, label.find(" ÷ ")),
-                                       rivalSentence(tally, rivalName(rivals, i, table.words),
-                                                     rivalName(rivals, 0, table.words),
-                                                     RivalWords::of(metric, clock))));
+                .push_back(fmt::format(
+                    "{}: {}.", label.substr(0, label.find(" ÷ ")),
+                    rivalSentence(tally, nameOf(i), nameOf(0), RivalWords::of(metric, clock))));
         }
     }
     table.toldNotes = told.size();

@@ -290,6 +290,7 @@ class Report(report_page.Pages):
             self.open(fragment)
             self.assertLessEqual(self.browser.script("return document.documentElement.scrollWidth - innerWidth"), 0)
         self.assertEqual((self.shown(".current .narrow"), self.shown(".current .wide")), (1, 0), "of the curve")
+        self.assertLessEqual(self.browser.script("const t = document.querySelector('.current .assumed').parentElement; return t.scrollWidth - t.clientWidth"), 0)
         self.browser.screenshot(OUT / "narrow.png")
         self.browser.resize(1300, 900)
         self.assertEqual((self.shown(".current .narrow"), self.shown(".current .wide")), (0, 1), "of the curve")

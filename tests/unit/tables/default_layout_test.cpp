@@ -108,17 +108,23 @@ TEST(DefaultLayout, SaysWhatOneFrameAloneCannotHave) {
 }
 
 /// Frames of three methods over six processes: 10, 9 and 10 ms, of which the first wavers.
-Recorded ofMethods() {
+Recorded ofMethods(const std::string& suffix = "") {
     RecordMaker maker("sweep/s");
     for (const auto& [method, ms] :
          {std::pair("plain", 10.0), std::pair("fast", 9.0), std::pair("alike", 10.0)}) {
-        maker.beginCase("", std::string(R"({"method": ")") + method + "\"}").lane("timing");
+        maker.beginCase("", std::string(R"({"method": ")") + method + suffix + "\"}")
+            .lane("timing");
         for (int process = 0; process < 6; ++process) {
             const double wavering = method[0] == 'p' ? 0.01 * (process - 2.5) : 0.0;
             maker.process(process).add("wall_time_ms", {ms + wavering});
         }
     }
     return maker.records();
+}
+
+TEST(DefaultLayout, TellsMethodsByTheNamesOfTheirRows) {
+    EXPECT_EQ(buildTable(sweepOf("{method: [plain_way, fast_way]}"), ofMethods("_way")).notes[0],
+              "frame: fast way is faster than plain way in the one row (0.9 times its time).");
 }
 
 TEST(DefaultLayout, HoldsMethodsAgainstTheFirst) {
@@ -307,7 +313,7 @@ TEST(DefaultLayout, BuiltInMethodsAreHeldByCpuTimeWhereItWasRecorded) {
     Table table = buildTable(experiment, atSizes(2, wall, cpu));
     EXPECT_THAT(
         table.notes[0],
-        HasSubstr("frame: fast is faster than plain in all 2 rows (0.8 times its CPU time)"));
+        HasSubstr("frame: fast is faster than plain in both rows (0.8 times its CPU time)"));
     EXPECT_THAT(table.judgedByProcess, ElementsAre("frame_ms", "frame ÷ plain"));
     showProcessTimes(table.judgedByProcess, table);
     EXPECT_THAT(labelsOf(table),
