@@ -10,6 +10,7 @@
 #include "engine/core/random.h"
 #include "techniques/clustered_reflections/clustered_tracer.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 
 namespace gfxrepro::clustered_reflections {
 namespace {
@@ -131,7 +132,6 @@ constexpr glm::ivec2 kOriginPx{24, 43};
 
 constexpr const char* kMarchShader = R"(#version 450 core
 #include "clustered_reflections/march.glsl"
-#include "tests/support/grid.h"
 layout(local_size_x = 64) in;
 layout(std430, binding = 0) readonly buffer Rays { vec4 rays[]; };
 layout(std430, binding = 1) writeonly buffer Hits { vec4 hits[]; };  // hit, u, along, steps

@@ -11,6 +11,7 @@
 #include "engine/raycast/ray_tracer.h"
 #include "engine/scene/load.h"
 #include "tests/gl/gl_fixture.h"
+#include "tests/support/grid.h"
 #include "tests/techniques/reflections/reflections_fixture.h"
 
 namespace gfxrepro::reflections {
@@ -31,7 +32,6 @@ constexpr std::uint32_t kNone = 0xFFFFFFFFU;
 
 constexpr const char* kTraceShader = R"(#version 450 core
 #include "reflections/bvh.glsl"
-#include "tests/support/grid.h"
 layout(local_size_x = 64) in;
 struct Ray { vec3 origin; float tMin; vec3 direction; float tMax; };
 struct Hit { float t; uint triangle; vec2 barycentric; };
