@@ -187,7 +187,7 @@ TEST(Table, WhatOthersOfItsRowAndColumnRecordIsBlank) {
     EXPECT_TRUE(table.rows[1].cells[1].isPlanned) << "printed, so it should be there";
     EXPECT_EQ(table.rows[1].cells[1].measured, "missing");
     // Of a column that nothing recorded the metric may be misspelt.
-    maker = {};
+    maker = RecordMaker();
     maker.beginCase("models/duck").add("triangles", {1254.0}, "", "triangle");
     maker.beginCase("models/bunny").add("triangles", {69451.0}, "", "triangle");
     experiment.printed = {};
