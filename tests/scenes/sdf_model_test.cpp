@@ -150,7 +150,8 @@ TEST(Generators, BadParametersAreLocated) {
                   findGenerator(registeredGenerators(), "sdf_modle", {"s.yaml", 4, 9});
               }),
               "s.yaml:4:9: unknown generator 'sdf_modle'; did you mean 'sdf_model'? (there are: "
-              "bathroom, bird_nest, city, four_objects, grass, living_room, object_on_plane, "
+              "bathroom, bird_nest, city, cornell_box, four_objects, grass, living_room, "
+              "object_on_plane, "
               "sdf_model, terrain, town_square, tree)");
 }
 

@@ -1,6 +1,8 @@
 // Pictures on their way into a page.
 #include "runner/report/gallery.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
